@@ -1,0 +1,51 @@
+#ifndef friction_compatibility_h
+#define friction_compatibility_h
+
+// Everything that differs between deal.II 9.4.1 and later releases is gathered
+// in this one header, so that no other file needs a version check.
+
+#include <deal.II/base/config.h>
+
+#include <deal.II/base/index_set.h>
+#include <deal.II/base/mpi.h>
+
+#include <deal.II/lac/affine_constraints.h>
+
+namespace Friction
+{
+  namespace Compatibility
+  {
+    /**
+     * The communicator of a triangulation, DoFHandler or vector. The member
+     * function was renamed in deal.II 9.7.
+     */
+    template <typename Object>
+    MPI_Comm
+    mpi_communicator(const Object &object)
+    {
+#if DEAL_II_VERSION_GTE(9, 7, 0)
+      return object.get_mpi_communicator();
+#else
+      return object.get_communicator();
+#endif
+    }
+
+    /**
+     * An empty set of constraints for the locally relevant degrees of freedom.
+     * Since deal.II 9.6 the locally owned ones are wanted as well.
+     */
+    inline dealii::AffineConstraints<double>
+    make_constraints(const dealii::IndexSet &locally_owned,
+                     const dealii::IndexSet &locally_relevant)
+    {
+#if DEAL_II_VERSION_GTE(9, 6, 0)
+      return dealii::AffineConstraints<double>(locally_owned, locally_relevant);
+#else
+      (void)locally_owned;
+      return dealii::AffineConstraints<double>(locally_relevant);
+#endif
+    }
+  } // namespace Compatibility
+} // namespace Friction
+
+#endif

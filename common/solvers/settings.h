@@ -1,0 +1,82 @@
+#ifndef friction_solvers_settings_h
+#define friction_solvers_settings_h
+
+namespace Friction
+{
+  /**
+   * How normal and tangential contact forces are tied together.
+   */
+  enum class FrictionLaw
+  {
+    none,   ///< frictionless: nothing of friction is allocated or computed
+    tresca, ///< the normal forces in the friction bound are given
+    coulomb ///< the normal forces in the friction bound are those of the solution
+  };
+
+  /**
+   * How the normal forces of Coulomb's law are found.
+   */
+  enum class Algorithm
+  {
+    fixed_point,      ///< Algorithm 2: an outer iteration over Tresca problems
+    gauss_seidel_like ///< Algorithm 3: updated inside the leading relaxation
+  };
+
+  enum class CoarseCorrection
+  {
+    truncated, ///< unconstrained on truncated functions, then a line search
+    monotone   ///< constrained by coarse obstacles, no line search needed
+  };
+
+  enum class Cycle
+  {
+    V,
+    W
+  };
+
+  enum class TruncationVariant
+  {
+    phases,                     ///< stick: all components; slip: the normal one
+    contact,                    ///< all components of every node in contact
+    phases_without_second_order ///< phases, but no second derivative of friction
+  };
+
+  /**
+   * Everything that can be chosen about the nonlinear solver. The defaults are
+   * those of the step programs' parameter files.
+   */
+  struct SolverSettings
+  {
+    Algorithm         algorithm         = Algorithm::gauss_seidel_like;
+    CoarseCorrection  coarse_correction = CoarseCorrection::truncated;
+    Cycle             cycle             = Cycle::V;
+    TruncationVariant truncation        = TruncationVariant::phases;
+
+    /// Relaxation sweeps on the leaf mesh before and after the coarse correction.
+    unsigned int smoothing_steps = 3;
+
+    /// The same on the correction levels.
+    unsigned int coarse_smoothing_steps = 6;
+
+    /// Relative increment at which the multigrid iteration stops.
+    double inner_tolerance = 1e-9;
+
+    /// Relative change of the normal forces at which Algorithm 2 stops.
+    double outer_tolerance = 2e-7;
+
+    /// Largest residual of the discrete law, relative to the largest nodal force
+    /// or gap, with which a solution is certified.
+    double certificate_tolerance = 1e-6;
+
+    unsigned int maximum_cycles           = 200;
+    unsigned int maximum_outer_iterations = 50;
+
+    /// Largest step length in the line search after a coarse correction.
+    double maximum_damping = 2.;
+
+    /// Damping of the normal forces in Algorithm 2; 1 is the plain fixed point.
+    double outer_damping = 1.;
+  };
+} // namespace Friction
+
+#endif
