@@ -1,0 +1,40 @@
+#ifndef friction_estimate_marking_h
+#define friction_estimate_marking_h
+
+#include <deal.II/distributed/tria.h>
+
+#include <deal.II/lac/vector.h>
+
+namespace Friction
+{
+  /**
+   * Set the refinement flag of all cells with $\eta_K>\theta\max_L\eta_L$.
+   * Returns the number of cells marked on all processes: none if all errors are
+   * 0.
+   *
+   * Cells whose errors differ by rounding only are treated alike, here and
+   * below, so that a symmetric problem keeps a symmetric mesh.
+   *
+   * @param cell_errors $\eta_K\ge0$, one value per active cell.
+   * @param theta       between 0 and 1; smaller values mark more cells.
+   */
+  template <int dim>
+  unsigned int mark_by_maximum(
+    dealii::parallel::distributed::Triangulation<dim> &triangulation,
+    const dealii::Vector<float>                       &cell_errors,
+    const double                                       theta);
+
+  /**
+   * Set the refinement flag of the cells with the largest errors, as few as
+   * carry the fraction @p theta of $\sum_K\eta_K^2$ (Dörfler, SIAM J. Numer.
+   * Anal. 33, 1996). Larger values mark more cells. Otherwise as
+   * mark_by_maximum().
+   */
+  template <int dim>
+  unsigned int
+  mark_bulk(dealii::parallel::distributed::Triangulation<dim> &triangulation,
+            const dealii::Vector<float>                       &cell_errors,
+            const double                                       theta);
+} // namespace Friction
+
+#endif

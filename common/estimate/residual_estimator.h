@@ -1,0 +1,140 @@
+#ifndef friction_estimate_residual_estimator_h
+#define friction_estimate_residual_estimator_h
+
+#include <deal.II/base/function.h>
+#include <deal.II/base/types.h>
+
+#include <deal.II/dofs/dof_handler.h>
+
+#include <deal.II/fe/component_mask.h>
+#include <deal.II/fe/mapping.h>
+
+#include <deal.II/lac/la_parallel_vector.h>
+#include <deal.II/lac/vector.h>
+
+#include <map>
+
+namespace Friction
+{
+  /**
+   * What the estimator has to know of the elastic contact problem. Functions
+   * are referred to, not copied, and have dim components.
+   */
+  template <int dim>
+  struct EstimatorProblem
+  {
+    /// Lamé's constants, in the units of stress (2D: plane strain).
+    double lambda = 0.;
+    double mu     = 0.;
+
+    /// Force per volume; none if not given.
+    const dealii::Function<dim> *body_force = nullptr;
+
+    /// Prescribed tractions (force per area, acting on the body).
+    std::map<dealii::types::boundary_id, const dealii::Function<dim> *>
+      tractions;
+
+    /// Which components of the displacement are prescribed where. The others
+    /// are free of traction, or have the one above. The same holds for
+    /// boundaries that are mentioned nowhere.
+    std::map<dealii::types::boundary_id, dealii::ComponentMask> dirichlet;
+
+    /// Boundary id of $\Gamma_S$. Invalid if there is none.
+    dealii::types::boundary_id contact_boundary =
+      dealii::numbers::invalid_boundary_id;
+
+    /// Coefficient of friction, for the dissipation in the sliding zone.
+    double friction_coefficient = 0.;
+  };
+
+
+
+  /**
+   * What is known of the contact boundary at the solution. All vectors belong
+   * to the DoFHandler of the displacement, with ghost values and hanging nodes
+   * interpolated; outside of $\Gamma_S$ they are not looked at.
+   */
+  struct EstimatorContact
+  {
+    using VectorType = dealii::LinearAlgebra::distributed::Vector<double>;
+
+    /// Nodal contact tractions: force on the body over nodal measure, 0 at open
+    /// nodes.
+    const VectorType *traction = nullptr;
+
+    /// The unit normals $n(p)$, and the vectors $g(p)\,n(p)$ from the node to
+    /// the obstacle. Without them the complementarity terms are left out.
+    const VectorType *normal     = nullptr;
+    const VectorType *gap_vector = nullptr;
+  };
+
+
+
+  struct ErrorEstimate
+  {
+    /// $\eta_K$, one per active cell; 0 on cells of other processes.
+    dealii::Vector<float> cell_errors;
+
+    /// $\left(\sum_K\eta_K^2\right)^{1/2}$ over all processes.
+    double total = 0.;
+
+    /// $\sqrt{a(u_h,u_h)}$, to measure @p total against.
+    double energy_norm = 0.;
+
+    /// The shares in the square of @p total: where the error comes from.
+    double interior        = 0.;
+    double jumps           = 0.;
+    double tractions       = 0.;
+    double contact         = 0.;
+    double complementarity = 0.;
+
+    /// Estimated error relative to the solution.
+    double relative() const;
+  };
+
+
+
+  /**
+   * Residual-based estimate of the error in the energy norm,
+   * @f{align*}{
+   *   \eta_K^2 = \frac1{2\mu}\Big(
+   *      & h_K^2\,\|f+\operatorname{div}\sigma_h\|_K^2
+   *        + \tfrac12\sum_{e\subset\partial
+   * K\cap\Omega}h_e\,\|[\sigma_hn]\|_e^2
+   *        + \sum_{e\subset\Gamma_N}h_e\,\|t-\sigma_hn\|_e^2
+   *        + \sum_{e\subset\Gamma_S}h_e\,\|t_h-\sigma_hn\|_e^2 \Big) \\
+   *      & + \sum_{e\subset\Gamma_S}\int_e p_h\,(g-u_{h,n})_+
+   *        + \big(F p_h|u_{h,T}|+t_{h,T}\cdot u_{h,T}\big)_+ ,
+   * @f}
+   * with $h$ the diameters of cells and faces. The first line is Verfürth's
+   * estimator for elasticity (A Posteriori Error Estimation Techniques for
+   * Finite Element Methods, 2013, chapter 4). On the contact boundary the
+   * multiplier $t_h$, the nodal contact tractions interpolated linearly, takes
+   * the place of a prescribed traction, and what remains of the contact laws
+   * between the nodes is added (Hild and Nicaise, Numer. Math. 101, 2005, for
+   * contact; Krause, Veeser and Walloth, Numer. Math. 130, 2015, for the
+   * distinction between the discrete contact force and the boundary stress).
+   * $p_h=-t_h\cdot n$.
+   *
+   * The factor $1/(2\mu)$ turns squared stresses into energies, so the relative
+   * estimate does not depend on the units of the scene. With it rather than
+   * $1/(\lambda+2\mu)$ the bound from above holds uniformly in $\lambda$, since
+   * $2\mu\|\varepsilon(v)\|^2\le a(v,v)$; the price is overestimation as
+   * $\nu\to\frac12$. The estimate is a bound up to a constant that depends on
+   * the shape of the cells only.
+   *
+   * A hanging face is integrated over its smaller parts and shared by
+   * the cells on both sides, like every other interior face.
+   *
+   * @param displacement with ghost values and hanging nodes interpolated.
+   */
+  template <int dim>
+  ErrorEstimate estimate_error(
+    const dealii::Mapping<dim>                               &mapping,
+    const dealii::DoFHandler<dim>                            &dof_handler,
+    const EstimatorProblem<dim>                              &problem,
+    const dealii::LinearAlgebra::distributed::Vector<double> &displacement,
+    const EstimatorContact &contact = EstimatorContact());
+} // namespace Friction
+
+#endif

@@ -1,0 +1,71 @@
+#ifndef friction_output_console_h
+#define friction_output_console_h
+
+#include <common/output/history.h>
+
+#include <chrono>
+#include <iosfwd>
+#include <string>
+
+namespace Friction
+{
+  /**
+   * The table a run prints: one row per level, as the level completes, and a
+   * sign of life inside long levels.
+   *
+   * On a terminal the sign of life is one line that is overwritten; in a log
+   * file it is a line of its own now and then. Nothing of what depends on the
+   * clock is printed if times are switched off, so that the output can be
+   * compared from run to run.
+   *
+   * With several processes all but one construct a silent console.
+   */
+  class Console
+  {
+  public:
+    enum class Times
+    {
+      shown,
+      hidden ///< no column of seconds, no progress
+    };
+
+    /**
+     * @param out where to print; must outlive this object. If it is std::cout
+     *            and that is a terminal, progress lines are overwritten.
+     */
+    explicit Console(std::ostream &out,
+                     const Times   times  = Times::shown,
+                     const bool    silent = false);
+
+    /// The row of a level that is complete; before the first one the header.
+    void level_complete(const LevelRecord &record);
+
+    /**
+     * To be called after each cycle; prints only if the level has been running
+     * for more than two seconds, and not too often then.
+     */
+    void progress(const unsigned int level,
+                  const unsigned int cycle,
+                  const double       increment);
+
+    /// A line of text between the rows: a warning or a remark.
+    void note(const std::string &text);
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    void clear_progress();
+
+    std::ostream &out;
+    const bool    show_times;
+    const bool    silent;
+    const bool    terminal;
+
+    bool              header_printed = false;
+    std::size_t       progress_width = 0;
+    Clock::time_point level_start;
+    Clock::time_point last_progress;
+  };
+} // namespace Friction
+
+#endif

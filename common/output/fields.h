@@ -1,0 +1,109 @@
+#ifndef friction_output_fields_h
+#define friction_output_fields_h
+
+#include <deal.II/base/types.h>
+
+#include <deal.II/dofs/dof_handler.h>
+
+#include <deal.II/fe/mapping.h>
+
+#include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/la_parallel_vector.h>
+#include <deal.II/lac/vector.h>
+
+#include <common/output/history.h>
+#include <common/output/run_directory.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * Writes what is to be looked at with ParaView: for every level the body with
+   * its displacement and stress, and the possible contact boundary with the
+   * contact stresses.
+   *
+   * Files, NN being the level: `body-NN.pvtu` and `contact-NN.pvtu` with one
+   * `.vtu` piece per process, and `body.pvd`, `contact.pvd` over the levels,
+   * which count as times. All files are written beside and renamed. The mesh is
+   * written undeformed; ParaView's filter Warp By Vector deforms it.
+   *
+   * Body: the vector `displacement`; `stress_xx`, `stress_yy`, `stress_zz`,
+   * `stress_xy` (3D also `stress_yz`, `stress_xz`) and `von_Mises_stress`,
+   * evaluated in each cell's corners, so their jumps between cells stay
+   * visible; `estimated_error` per cell if it is given. In 2D plane strain is
+   * assumed, from which the third normal stress follows.
+   *
+   * Contact boundary: the vectors `displacement`, `traction` (of the obstacle
+   * on the body), `tangential_traction`, and `normal`; the numbers `pressure`
+   * (positive in compression), `gap`, `distance` (gap minus normal
+   * displacement, 0 in contact) and `state` (0 open, 1 sliding, 2 sticking).
+   * Nodal tractions are nodal forces over nodal measures. In 2D vectors get a
+   * third component 0, as the format demands.
+   */
+  template <int dim>
+  class FieldWriter
+  {
+  public:
+    using VectorType = dealii::LinearAlgebra::distributed::Vector<double>;
+
+    /**
+     * @param directory        where the files go.
+     * @param lambda, mu       Lamé's constants, in the units of stress.
+     * @param contact_boundary boundary id of $\Gamma_S$.
+     */
+    FieldWriter(const RunDirectory              &directory,
+                const double                     lambda,
+                const double                     mu,
+                const dealii::types::boundary_id contact_boundary);
+
+    /**
+     * Write the fields of a level.
+     *
+     * @param displacement of @p dof_handler (FESystem of dim FE_Q(1)), with
+     *                     ghost values and hanging nodes interpolated.
+     * @param constraints  hanging nodes, to interpolate on the contact
+     * boundary.
+     * @param contact      the contact nodes this process knows, its ghost nodes
+     *                     among them; ContactRecord::dof must be set. Without
+     *                     contact nodes no boundary is written.
+     * @param cell_errors  one value per active cell, or nothing.
+     */
+    void write_level(const unsigned int                       level,
+                     const dealii::Mapping<dim>              &mapping,
+                     const dealii::DoFHandler<dim>           &dof_handler,
+                     const VectorType                        &displacement,
+                     const dealii::AffineConstraints<double> &constraints,
+                     const std::vector<ContactRecord<dim>>   &contact,
+                     const dealii::Vector<float> *cell_errors = nullptr);
+
+  private:
+    void write_body(const unsigned int             level,
+                    const dealii::Mapping<dim>    &mapping,
+                    const dealii::DoFHandler<dim> &dof_handler,
+                    const VectorType              &displacement,
+                    const dealii::Vector<float>   *cell_errors);
+
+    void
+    write_contact_boundary(const unsigned int             level,
+                           const dealii::Mapping<dim>    &mapping,
+                           const dealii::DoFHandler<dim> &dof_handler,
+                           const VectorType              &displacement,
+                           const dealii::AffineConstraints<double> &constraints,
+                           const std::vector<ContactRecord<dim>>   &contact);
+
+    using TimesAndNames = std::vector<std::pair<double, std::string>>;
+
+    const RunDirectory               directory;
+    const double                     lambda;
+    const double                     mu;
+    const dealii::types::boundary_id contact_boundary;
+
+    TimesAndNames body_files;
+    TimesAndNames contact_files;
+  };
+} // namespace Friction
+
+#endif

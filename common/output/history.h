@@ -1,0 +1,169 @@
+#ifndef friction_output_history_h
+#define friction_output_history_h
+
+#include <deal.II/base/point.h>
+#include <deal.II/base/tensor.h>
+#include <deal.II/base/types.h>
+
+#include <string>
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * What is kept of one level of the nested iteration: one value in each
+   * dataset under `/levels`. Forces are those of the whole contact boundary, in
+   * the units of the scene (2D: per unit of thickness).
+   */
+  struct LevelRecord
+  {
+    unsigned int level            = 0;
+    unsigned int cells            = 0;
+    unsigned int dofs             = 0;
+    unsigned int contact_nodes    = 0;
+    unsigned int sticky_nodes     = 0;
+    unsigned int outer_iterations = 0;
+    unsigned int cycles           = 0;
+
+    /// Mean contraction of the increments per cycle.
+    double contraction = 0.;
+
+    /// The functional at the solution.
+    double energy = 0.;
+
+    /// Sum of the nodal normal forces, positive in compression.
+    double normal_force = 0.;
+
+    /// Norm of the sum of the nodal tangential force vectors.
+    double tangential_force = 0.;
+
+    /// Largest nodal contact pressure: nodal normal force over nodal measure.
+    double max_pressure = 0.;
+
+    double contact_half_width = 0.;
+    double stick_half_width   = 0.;
+
+    /// Estimated error in the energy norm.
+    double estimated_error = 0.;
+
+    /// Largest scaled residual of the discrete contact and friction laws.
+    double certificate = 0.;
+
+    double setup_seconds = 0.;
+    double solve_seconds = 0.;
+  };
+
+  /**
+   * What is kept of one multigrid cycle: one value in each dataset under
+   * `/cycles`.
+   */
+  struct CycleRecord
+  {
+    unsigned int level     = 0;
+    double       increment = 0.;
+    double       energy    = 0.;
+    double       damping   = 0.;
+
+    /// Number of degrees of freedom the coarse correction leaves out.
+    unsigned int truncated = 0;
+    double       residual  = 0.;
+  };
+
+  /**
+   * What is kept of one contact node: one row in each dataset under
+   * `/contact/level_NN`, and one point of the boundary fields.
+   */
+  template <int dim>
+  struct ContactRecord
+  {
+    /// First of the dim consecutive degrees of freedom of the node, not written
+    /// to the file: with it the fields find the node on the mesh.
+    dealii::types::global_dof_index dof = dealii::numbers::invalid_dof_index;
+
+    dealii::Point<dim>     point;
+    dealii::Tensor<1, dim> normal;
+    double                 gap = 0.;
+    dealii::Tensor<1, dim> displacement;
+
+    /// Force of the obstacle on the body, $Au-f$: its product with the normal
+    /// is negative in contact.
+    dealii::Tensor<1, dim> force;
+
+    /// Lumped measure of the boundary around the node.
+    double measure = 0.;
+
+    /// 0 open, 1 sliding, 2 sticking.
+    unsigned int state = 0;
+  };
+
+  /**
+   * The protocol of a run, `history.h5`. After each level the file is written
+   * completely anew and put in place by renaming, so a run that is killed
+   * leaves everything up to its last complete level, and no run leaves a
+   * damaged file.
+   *
+   * Root attributes: `scene`, `parameters` (the full text), `version`.
+   * Datasets: the members of LevelRecord under `/levels` and those of
+   * CycleRecord under
+   * `/cycles`, each one-dimensional; in `/contact/level_NN` the datasets
+   * `point`, `normal`, `displacement`, `force` (nodes $\times$ dim) and `gap`,
+   * `measure`, `state` (nodes $\times$ 1). A level without contact nodes has no
+   * group there, since HDF5 through deal.II has no empty datasets; for the same
+   * reason `/cycles` exists only once there was a cycle.
+   *
+   * Only one process may own a History; the records of the others are gathered
+   * by the caller.
+   */
+  template <int dim>
+  class History
+  {
+  public:
+    /**
+     * @param file_name  where the file goes, say
+     * `run_directory.file("history.h5")`.
+     * @param scene      name of the scene.
+     * @param parameters full text of the parameters of the run.
+     * @param version    version of the program.
+     */
+    History(const std::string &file_name,
+            const std::string &scene,
+            const std::string &parameters,
+            const std::string &version);
+
+    /**
+     * Take over the records of a level that is complete, and write the file.
+     * The levels are expected in the order in which they are computed; the
+     * cycles carry their own level.
+     */
+    void add_level(const LevelRecord                     &level,
+                   const std::vector<CycleRecord>        &cycles,
+                   const std::vector<ContactRecord<dim>> &contact);
+
+    const std::vector<LevelRecord> &levels() const;
+
+  private:
+    struct ContactLevel
+    {
+      unsigned int                    level;
+      std::vector<ContactRecord<dim>> nodes;
+    };
+
+    void write_file() const;
+
+    void write_hdf5(const std::string &name) const;
+
+    /// A lower bound for the size of the file in bytes: that of its numbers.
+    std::size_t payload() const;
+
+    std::string file_name;
+    std::string scene;
+    std::string parameters;
+    std::string version;
+
+    std::vector<LevelRecord>  level_records;
+    std::vector<CycleRecord>  cycle_records;
+    std::vector<ContactLevel> contact_levels;
+  };
+} // namespace Friction
+
+#endif

@@ -1,0 +1,63 @@
+#ifndef friction_output_run_directory_h
+#define friction_output_run_directory_h
+
+#include <functional>
+#include <ostream>
+#include <string>
+
+namespace Friction
+{
+  /**
+   * Writes a file beside its final place and renames it when it is complete.
+   * Renaming within a directory is atomic: whoever looks at the final name
+   * finds the previous file or the new one, never half of either, also if the
+   * run is killed in between or the disk is full.
+   *
+   * @p write_to gets the temporary name, in the same directory as
+   * @p final_name and with the same ending. If it throws, or if the file cannot
+   * be renamed, the temporary file is removed and the exception passed on.
+   */
+  void write_then_rename(
+    const std::string                                            &final_name,
+    const std::function<void(const std::string &temporary_name)> &write_to);
+
+  /**
+   * The same for everything that is written into a stream. Write errors,
+   * a full disk above all, become one InputError that names the file; a writer
+   * need not check its stream.
+   */
+  void
+  write_stream_then_rename(const std::string &final_name,
+                           const std::function<void(std::ostream &)> &write_to);
+
+  /**
+   * The directory a run writes into. An object of this class is the proof that
+   * the directory exists and can be written to, so a run learns this in its
+   * first second and not after its last level.
+   */
+  class RunDirectory
+  {
+  public:
+    /**
+     * Create the directory and its parents where they are missing. Throws an
+     * InputError of one sentence if this is impossible, or if no file can be
+     * written there.
+     */
+    explicit RunDirectory(const std::string &path);
+
+    /// The path as it was given.
+    const std::string &path() const;
+
+    /// The path of a file in this directory.
+    std::string file(const std::string &name) const;
+
+    /// write_stream_then_rename() for a file in this directory.
+    void write(const std::string                         &name,
+               const std::function<void(std::ostream &)> &write_to) const;
+
+  private:
+    std::string directory;
+  };
+} // namespace Friction
+
+#endif
