@@ -1,0 +1,176 @@
+#ifndef friction_scene_obstacle_h
+#define friction_scene_obstacle_h
+
+#include <deal.II/base/exceptions.h>
+#include <deal.II/base/point.h>
+#include <deal.II/base/tensor.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace Friction
+{
+  using namespace dealii;
+
+  /**
+   * A rigid obstacle: nothing, a half space, or a number of circular rods
+   * (discs in two dimensions). All that the contact conditions ask of it is how
+   * far it is from a point in a given direction, and which direction leads
+   * straight towards it.
+   */
+  template <int dim>
+  class Obstacle
+  {
+  public:
+    /// No obstacle at all.
+    Obstacle() = default;
+
+    /**
+     * The half space on that side of the plane through @p point to which
+     * @p normal points, of any positive length.
+     */
+    static Obstacle
+    half_space(const Point<dim> &point, const Tensor<1, dim> &normal)
+    {
+      Obstacle obstacle;
+      obstacle.planes.push_back({point, normal / normal.norm()});
+      return obstacle;
+    }
+
+    /**
+     * Infinite rods of the same radius through the given points.
+     *
+     * @param centers a point on the axis of each rod
+     * @param axes directions of the axes, of any positive length; not used,
+     *   and may be empty, in two dimensions
+     * @param radius of all rods, a length
+     */
+    static Obstacle
+    make_rods(const std::vector<Point<dim>>     &centers,
+              const std::vector<Tensor<1, dim>> &axes,
+              const double                       radius)
+    {
+      Assert(dim == 2 || axes.size() == centers.size(),
+             ExcDimensionMismatch(axes.size(), centers.size()));
+      Obstacle obstacle;
+      for (unsigned int i = 0; i < centers.size(); ++i)
+        {
+          // In 2D the axis is perpendicular to the plane; a zero vector makes
+          // the projection below do nothing.
+          Tensor<1, dim> axis;
+          if (dim == 3)
+            axis = axes[i] / axes[i].norm();
+          obstacle.rods.push_back({centers[i], axis, radius});
+        }
+      return obstacle;
+    }
+
+    /// Whether there is no obstacle.
+    bool
+    empty() const
+    {
+      return planes.empty() && rods.empty();
+    }
+
+    /**
+     * Distance along the unit vector @p direction from @p p to the surface of
+     * the obstacle. Negative when @p p lies inside it, and infinite when the
+     * ray never meets the surface, or meets it so flatly (the cosine of the
+     * angle with its normal being below 0.05) that the distance means nothing.
+     */
+    double
+    gap(const Point<dim> &p, const Tensor<1, dim> &direction) const
+    {
+      double gap = std::numeric_limits<double>::infinity();
+      for (const Plane &plane : planes)
+        {
+          const double cosine = plane.normal * direction;
+          if (cosine > flattest_cosine)
+            gap = std::min(gap, plane.normal * (plane.point - p) / cosine);
+        }
+      for (const Rod &rod : rods)
+        {
+          // The first intersection of the ray with the circle, in the plane
+          // perpendicular to the axis.
+          const Tensor<1, dim> to_axis      = across(rod, rod.center - p);
+          const Tensor<1, dim> n            = across(rod, direction);
+          const double         n_sqr        = n.norm_square();
+          const double         r            = rod.radius;
+          const double         along        = to_axis * n;
+          const double         excess       = to_axis.norm_square() - r * r;
+          const double         discriminant = along * along - n_sqr * excess;
+
+          // The root of the discriminant is r times the cosine sought.
+          const bool flat   = discriminant <= std::pow(flattest_cosine * r, 2);
+          const bool behind = (excess > 0. && along <= 0.);
+          if (flat || behind)
+            continue;
+          gap = std::min(gap, (along - std::sqrt(discriminant)) / n_sqr);
+        }
+      return gap;
+    }
+
+    /**
+     * The unit vector from @p p straight towards the (nearest part of the)
+     * obstacle; from inside, the one that led there. There must be an
+     * obstacle.
+     */
+    Tensor<1, dim>
+    normal(const Point<dim> &p) const
+    {
+      Assert(!empty(), ExcMessage("There is no obstacle to point to."));
+      Tensor<1, dim> nearest;
+      double         smallest = std::numeric_limits<double>::infinity();
+      for (const Plane &plane : planes)
+        {
+          const double distance = plane.normal * (plane.point - p);
+          if (distance < smallest)
+            {
+              smallest = distance;
+              nearest  = plane.normal;
+            }
+        }
+      for (const Rod &rod : rods)
+        {
+          const Tensor<1, dim> to_axis  = across(rod, rod.center - p);
+          const double         distance = to_axis.norm() - rod.radius;
+          if (distance < smallest && to_axis.norm() > 0.)
+            {
+              smallest = distance;
+              nearest  = to_axis / to_axis.norm();
+            }
+        }
+      return nearest;
+    }
+
+  private:
+    struct Plane
+    {
+      Point<dim>     point;
+      Tensor<1, dim> normal;
+    };
+
+    struct Rod
+    {
+      Point<dim>     center;
+      Tensor<1, dim> axis;
+      double         radius;
+    };
+
+    static constexpr double flattest_cosine = .05;
+
+    /// The part of a vector perpendicular to the axis of a rod.
+    static Tensor<1, dim>
+    across(const Rod &rod, const Tensor<1, dim> &v)
+    {
+      return v - (v * rod.axis) * rod.axis;
+    }
+
+    std::vector<Plane> planes;
+    std::vector<Rod>   rods;
+  };
+} // namespace Friction
+
+#endif

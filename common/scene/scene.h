@@ -1,0 +1,184 @@
+#ifndef friction_scene_scene_h
+#define friction_scene_scene_h
+
+#include <common/scene/material.h>
+#include <common/scene/obstacle.h>
+#include <common/scene/parameters.h>
+
+#include <deal.II/base/function.h>
+#include <deal.II/base/types.h>
+
+#include <deal.II/fe/component_mask.h>
+
+#include <deal.II/grid/tria.h>
+
+#include <memory>
+#include <vector>
+
+namespace Friction
+{
+  using namespace dealii;
+
+  /**
+   * A part of the boundary where (some components of) the displacement are
+   * prescribed.
+   */
+  template <int dim>
+  struct DirichletCondition
+  {
+    types::boundary_id boundary_id;
+
+    /// The components that are prescribed.
+    ComponentMask components;
+
+    /// The displacement, dim components, a length.
+    std::shared_ptr<const Function<dim>> displacement;
+  };
+
+  /**
+   * A part of the boundary with given traction.
+   */
+  template <int dim>
+  struct TractionCondition
+  {
+    types::boundary_id boundary_id;
+
+    /// The boundary stress, dim components.
+    std::shared_ptr<const Function<dim>> traction;
+  };
+
+  /**
+   * One component of the displacement prescribed in one vertex of the mesh,
+   * to rule out a rigid-body motion.
+   */
+  template <int dim>
+  struct PinnedPoint
+  {
+    Point<dim>   point;
+    unsigned int component;
+    double       value; ///< a length
+  };
+
+
+
+  /**
+   * What is modelled: the body and its mesh, its material, how it is held and
+   * loaded, what it may touch, and by which law of friction.
+   *
+   * Boundary ids of the meshes made here: half disc 0 the arc, 1 the flat top;
+   * rectangle 0 left, 1 right, 2 bottom, 3 top (in three dimensions 0 and 1 in
+   * x direction, 2 and 3 in y, 4 bottom and 5 top). Those of a mesh file are
+   * its physical ids.
+   *
+   * A rotation angle turns the whole scene around the origin (in three
+   * dimensions around the z axis), so that every function here is that of the
+   * turned scene.
+   */
+  template <int dim>
+  class Scene
+  {
+  public:
+    /**
+     * Throws InputError if the parameters do not describe a scene in dim
+     * dimensions, or one whose body can move as a rigid one.
+     */
+    explicit Scene(const Parameters &parameters);
+
+    /**
+     * Fill a given empty triangulation, which may be a distributed one, with
+     * the coarse mesh and set its boundary ids and manifolds. Throws
+     * InputError if the mesh cannot be read or lacks a boundary id or a pinned
+     * point that the scene mentions.
+     */
+    void make_coarse_mesh(Triangulation<dim> &triangulation) const;
+
+    const Material &
+    material() const
+    {
+      return parameters.material;
+    }
+
+    const std::vector<DirichletCondition<dim>> &
+    dirichlet_conditions() const
+    {
+      return dirichlet;
+    }
+
+    const std::vector<PinnedPoint<dim>> &
+    pinned_points() const
+    {
+      return pinned;
+    }
+
+    const std::vector<TractionCondition<dim>> &
+    traction_conditions() const
+    {
+      return tractions;
+    }
+
+    /// Force per volume, dim components; null if there is none.
+    std::shared_ptr<const Function<dim>>
+    body_force() const
+    {
+      return force;
+    }
+
+    /// Displacement that solves the problem, dim components; null if unknown.
+    std::shared_ptr<const Function<dim>>
+    exact_displacement() const
+    {
+      return exact;
+    }
+
+    /// numbers::invalid_boundary_id if the scene has no contact boundary.
+    types::boundary_id contact_boundary_id() const;
+
+    const Obstacle<dim> &
+    obstacle() const
+    {
+      return the_obstacle;
+    }
+
+    ContactNormal
+    contact_normal() const
+    {
+      return parameters.contact.normal;
+    }
+
+    /**
+     * The law of friction. Coulomb's law with a coefficient of zero is
+     * reported as no friction, so that nobody computes anything for it.
+     */
+    FrictionLaw friction_law() const;
+
+    /// Coefficient of friction; zero without friction.
+    double friction_coefficient() const;
+
+    /**
+     * Tresca's law: the largest tangential stress, one component; null for the
+     * other laws.
+     */
+    std::shared_ptr<const Function<dim>>
+    friction_bound() const
+    {
+      return bound;
+    }
+
+  private:
+    Parameters                           parameters;
+    Tensor<2, dim>                       rotation;
+    Obstacle<dim>                        the_obstacle;
+    std::vector<DirichletCondition<dim>> dirichlet;
+    std::vector<TractionCondition<dim>>  tractions;
+    std::vector<PinnedPoint<dim>>        pinned;
+    std::shared_ptr<const Function<dim>> force;
+    std::shared_ptr<const Function<dim>> exact;
+    std::shared_ptr<const Function<dim>> bound;
+
+    std::shared_ptr<const Function<dim>>
+    make_function(const std::vector<std::string> &components,
+                  const std::string              &where) const;
+  };
+} // namespace Friction
+
+#endif
