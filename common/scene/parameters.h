@@ -46,11 +46,11 @@ namespace Friction
     const std::map<std::string, double> &
     constants() const
     {
-      return numbers;
+      return named_numbers;
     }
 
   private:
-    std::map<std::string, double>      numbers;
+    std::map<std::string, double>      named_numbers;
     std::map<std::string, std::string> expanded_definitions;
   };
 
