@@ -10,7 +10,8 @@ namespace Friction
   {
     none,   ///< frictionless: nothing of friction is allocated or computed
     tresca, ///< the normal forces in the friction bound are given
-    coulomb ///< the normal forces in the friction bound are those of the solution
+    coulomb ///< the normal forces in the friction bound are those of the
+            ///< solution
   };
 
   /**
@@ -38,7 +39,8 @@ namespace Friction
   {
     phases,                     ///< stick: all components; slip: the normal one
     contact,                    ///< all components of every node in contact
-    phases_without_second_order ///< phases, but no second derivative of friction
+    phases_without_second_order ///< phases, but no second derivative of
+                                ///< friction
   };
 
   /**
@@ -52,7 +54,8 @@ namespace Friction
     Cycle             cycle             = Cycle::V;
     TruncationVariant truncation        = TruncationVariant::phases;
 
-    /// Relaxation sweeps on the leaf mesh before and after the coarse correction.
+    /// Relaxation sweeps on the leaf mesh before and after the coarse
+    /// correction.
     unsigned int smoothing_steps = 3;
 
     /// The same on the correction levels.
@@ -64,8 +67,8 @@ namespace Friction
     /// Relative change of the normal forces at which Algorithm 2 stops.
     double outer_tolerance = 2e-7;
 
-    /// Largest residual of the discrete law, relative to the largest nodal force
-    /// or gap, with which a solution is certified.
+    /// Largest residual of the discrete law, relative to the largest nodal
+    /// force or gap, with which a solution is certified.
     double certificate_tolerance = 1e-6;
 
     unsigned int maximum_cycles           = 200;
@@ -73,6 +76,10 @@ namespace Friction
 
     /// Largest step length in the line search after a coarse correction.
     double maximum_damping = 2.;
+
+    /// Number of previous steps that a truncated coarse correction is
+    /// recombined with; zero for none.
+    unsigned int recombined_steps = 1;
 
     /// Damping of the normal forces in Algorithm 2; 1 is the plain fixed point.
     double outer_damping = 1.;

@@ -1,0 +1,154 @@
+#include <common/contact/certificate.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <vector>
+
+namespace Friction
+{
+  namespace
+  {
+    std::array<std::pair<const char *, double>, 6>
+    entries(const Certificate &c)
+    {
+      return {{{"equilibrium", c.equilibrium},
+               {"penetration", c.penetration},
+               {"tension", c.tension},
+               {"complementarity", c.complementarity},
+               {"friction cone", c.cone},
+               {"slip direction", c.slip}}};
+    }
+  } // namespace
+
+
+
+  double
+  Certificate::largest() const
+  {
+    double largest = 0;
+    for (const auto &entry : entries(*this))
+      if (!(entry.second <= largest)) // true for NaN as well
+        largest = entry.second;
+    return largest;
+  }
+
+
+
+  std::string
+  Certificate::describe() const
+  {
+    std::ostringstream text;
+    text.precision(2);
+    text << std::scientific;
+    for (const auto &entry : entries(*this))
+      text << (entry.first == entries(*this)[0].first ? "" : ", ")
+           << entry.first << ' ' << entry.second;
+    return text.str();
+  }
+
+
+
+  template <int dim>
+  Certificate
+  make_certificate(const VectorType            &u,
+                   const VectorType            &residual,
+                   const NodalConstraints<dim> &constraints,
+                   const ContactBoundary<dim>  &contact,
+                   const ContactState          &state,
+                   const double                 friction_coefficient,
+                   const bool                   coulomb)
+  {
+    std::vector<char> is_contact_node(constraints.n_owned_nodes(), 0);
+    double            force_scale = 0, length_scale = 0;
+    for (const ContactNode<dim> &node : contact)
+      is_contact_node[node.node] = 1;
+
+    Certificate result;
+    for (unsigned int node = 0; node < constraints.n_owned_nodes(); ++node)
+      if (!constraints.is_hanging(node))
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double r = std::abs(residual.local_element(dim * node + d));
+            force_scale    = std::max(force_scale, r);
+            if (!is_contact_node[node] && !constraints.is_prescribed(node, d))
+              result.equilibrium =
+                !(r <= result.equilibrium) ? r : result.equilibrium;
+          }
+    for (const ContactNode<dim> &node : contact)
+      for (unsigned int d = 0; d < dim; ++d)
+        length_scale =
+          std::max({length_scale,
+                    std::abs(u.local_element(dim * node.node + d)),
+                    std::abs(normal_component(node, u) - node.gap)});
+    // Without any force or displacement there is nothing to compare with.
+    if (force_scale == 0)
+      force_scale = 1.;
+    if (length_scale == 0)
+      length_scale = 1.;
+    result.equilibrium /= force_scale;
+
+    const auto raise = [](double &largest, const double value) {
+      if (!(value <= largest))
+        largest = value;
+    };
+    for (unsigned int p = 0; p < contact.size(); ++p)
+      {
+        const ContactNode<dim> &node = contact[p];
+        const double pressing = normal_component(node, residual) / force_scale;
+        const double room =
+          (node.gap - normal_component(node, u)) / length_scale;
+        raise(result.penetration, -room);
+        raise(result.tension, -pressing);
+        raise(result.complementarity, std::min(pressing, room));
+
+        // The force on the body at the node, R = A u - f, is minus the residual.
+        const double tau = coulomb ? std::max(0., pressing) :
+                                     state.normal_force(p) / force_scale;
+        const double bound     = friction_coefficient * tau;
+        const auto   r_T       = tangential_components<dim>(node, residual);
+        const auto   u_T       = tangential_components<dim>(node, u);
+        double       norm      = 0, slip_norm = 0;
+        for (unsigned int t = 0; t < node.n_free_tangents; ++t)
+          {
+            norm += r_T[t] * r_T[t];
+            slip_norm += u_T[t] * u_T[t];
+          }
+        norm      = std::sqrt(norm) / force_scale;
+        slip_norm = std::sqrt(slip_norm);
+        raise(result.cone, norm - bound);
+
+        // Where it slides the force opposes the slip with full strength. Like
+        // complementarity this is a choice of two, so that rounding in the
+        // displacement of a sticking node is no violation.
+        double deviation = 0;
+        for (unsigned int t = 0; t < node.n_free_tangents; ++t)
+          if (slip_norm > 0)
+            deviation +=
+              std::pow(r_T[t] / force_scale - bound * u_T[t] / slip_norm, 2);
+        raise(result.slip,
+              std::min(std::sqrt(deviation), slip_norm / length_scale));
+      }
+    return result;
+  }
+
+
+
+  template Certificate
+  make_certificate(const VectorType &,
+                   const VectorType &,
+                   const NodalConstraints<2> &,
+                   const ContactBoundary<2> &,
+                   const ContactState &,
+                   const double,
+                   const bool);
+  template Certificate
+  make_certificate(const VectorType &,
+                   const VectorType &,
+                   const NodalConstraints<3> &,
+                   const ContactBoundary<3> &,
+                   const ContactState &,
+                   const double,
+                   const bool);
+} // namespace Friction

@@ -1,0 +1,131 @@
+#ifndef friction_contact_contact_boundary_h
+#define friction_contact_contact_boundary_h
+
+#include <common/contact/nodal_constraints.h>
+#include <common/scene/obstacle.h>
+#include <common/scene/parameters.h>
+
+#include <deal.II/base/point.h>
+#include <deal.II/base/tensor.h>
+
+#include <deal.II/fe/mapping.h>
+
+#include <array>
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * A node of the possible contact boundary $\Gamma_S$.
+   */
+  template <int dim>
+  struct ContactNode
+  {
+    /// Local number of the node on the leaf mesh.
+    unsigned int node;
+
+    Point<dim> point;
+
+    /// The frame $e_1 = n, e_2, \ldots$ at the node: the unit normal, pointing
+    /// from the body to the obstacle, and unit tangents.
+    std::array<Tensor<1, dim>, dim> frame;
+
+    /// How far the node may move along its normal, $u_n \le g$. A length.
+    double gap;
+
+    /// The lumped boundary measure $m_p = \int_{\Gamma_S} \lambda_p$: nodal
+    /// forces divided by it are stresses. A length in 2D, an area in 3D.
+    double measure;
+
+    /// Number of tangential directions that the node may move in. The tangents
+    /// in the frame are sorted: first the free ones, then those in which the
+    /// displacement is prescribed.
+    unsigned int n_free_tangents;
+
+    const Tensor<1, dim> &
+    normal() const
+    {
+      return frame[0];
+    }
+  };
+
+
+
+  /**
+   * The nodes of $\Gamma_S$ that can get into contact. Hanging nodes follow
+   * their masters and carry nothing of their own; their share of the boundary
+   * measure goes to the masters. Nodes that are entirely prescribed, and nodes
+   * whose normal never meets the obstacle, are left out.
+   */
+  template <int dim>
+  class ContactBoundary
+  {
+  public:
+    /**
+     * @throws InputError if a node is prescribed to penetrate the obstacle, or
+     *         if a prescribed component at a contact node has a part in normal
+     *         direction, so that contact and prescribed value would compete.
+     */
+    ContactBoundary(const Mapping<dim>              &mapping,
+                    const DoFHandler<dim>           &dof_handler,
+                    const AffineConstraints<double> &hanging,
+                    const NodalConstraints<dim>     &constraints,
+                    const types::boundary_id         boundary_id,
+                    const Obstacle<dim>             &obstacle,
+                    const ContactNormal              contact_normal);
+
+    unsigned int
+    size() const
+    {
+      return nodes.size();
+    }
+
+    const ContactNode<dim> &
+    operator[](const unsigned int p) const
+    {
+      return nodes[p];
+    }
+
+    typename std::vector<ContactNode<dim>>::const_iterator
+    begin() const
+    {
+      return nodes.begin();
+    }
+
+    typename std::vector<ContactNode<dim>>::const_iterator
+    end() const
+    {
+      return nodes.end();
+    }
+
+  private:
+    std::vector<ContactNode<dim>> nodes;
+  };
+
+
+
+  /** The normal component of the value at a contact node. */
+  template <int dim>
+  double
+  normal_component(const ContactNode<dim> &p, const VectorType &v)
+  {
+    double sum = 0;
+    for (unsigned int d = 0; d < dim; ++d)
+      sum += p.normal()[d] * v.local_element(dim * p.node + d);
+    return sum;
+  }
+
+  /** The tangential components of the value at a contact node, in its frame. */
+  template <int dim>
+  std::array<double, dim - 1>
+  tangential_components(const ContactNode<dim> &p, const VectorType &v)
+  {
+    std::array<double, dim - 1> result{};
+    for (unsigned int t = 1; t < dim; ++t)
+      for (unsigned int d = 0; d < dim; ++d)
+        result[t - 1] += p.frame[t][d] * v.local_element(dim * p.node + d);
+    return result;
+  }
+} // namespace Friction
+
+#endif

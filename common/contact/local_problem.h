@@ -1,0 +1,73 @@
+#ifndef friction_contact_local_problem_h
+#define friction_contact_local_problem_h
+
+#include <array>
+
+namespace Friction
+{
+  /**
+   * The solution of a local contact problem, in the frame of the node.
+   */
+  template <int dim>
+  struct LocalSolution
+  {
+    double                      normal;
+    std::array<double, dim - 1> tangential;
+    bool                        in_contact;
+    bool                        sticks;
+  };
+
+
+
+  /**
+   * The local problem (6.15) at one node of the contact boundary: minimise
+   * @f[ \tfrac12 z^T a z - b^T z + s |z_T| \quad\text{over } z_n \le g @f]
+   * where $a$ is the diagonal block of the stiffness matrix in the frame of the
+   * node, $b$ the force that the other nodes leave, and $s = F\tau$ the bound
+   * of the tangential force.
+   *
+   * The problem is strictly convex and is solved exactly: first without the
+   * obstacle, eliminating $z_n$ by its Schur complement; if that penetrates,
+   * with $z_n = g$. Either way a problem in the tangential plane remains. In
+   * two dimensions its unit sphere has just two points, so stick, and slip to
+   * either side are compared directly, (6.18).
+   *
+   * Units: $z$ and $g$ are displacements, $b$ and $s$ nodal forces.
+   *
+   * Only dim=2 is available.
+   */
+  template <int dim>
+  class LocalProblem
+  {
+  public:
+    /**
+     * @param block           the diagonal block in the frame of the node,
+     *                        column by column, normal first. Must be symmetric
+     *                        positive definite.
+     * @param gap             $g$.
+     * @param n_free_tangents number of tangential directions that can move.
+     */
+    LocalProblem(const std::array<double, dim * dim> &block,
+                 const double                         gap,
+                 const unsigned int                   n_free_tangents);
+
+    /**
+     * Solves the problem.
+     * @param b           forces in the frame.
+     * @param bound       $s \ge 0$; zero means no friction.
+     * @param prescribed  values of the tangential displacements that cannot
+     *                    move; the others are ignored.
+     */
+    LocalSolution<dim>
+    solve(const std::array<double, dim>     &b,
+          const double                       bound,
+          const std::array<double, dim - 1> &prescribed) const;
+
+  private:
+    std::array<double, dim * dim> a;
+    double                        gap;
+    unsigned int                  n_free_tangents;
+  };
+} // namespace Friction
+
+#endif

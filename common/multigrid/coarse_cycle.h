@@ -1,0 +1,127 @@
+#ifndef friction_multigrid_coarse_cycle_h
+#define friction_multigrid_coarse_cycle_h
+
+#include <common/multigrid/coarsest_solver.h>
+#include <common/multigrid/level_matrices.h>
+#include <common/solvers/settings.h>
+
+#include <deal.II/dofs/dof_handler.h>
+
+#include <memory>
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * One multigrid cycle for the truncated linear problem
+   * $T(A+\omega'')T\,v = r$: everything below the leaf mesh.
+   *
+   * Restricted residuals go down, block Gauss-Seidel relaxes each level
+   * forwards before and backwards after the coarser levels, so that the V-cycle
+   * is a symmetric positive definite operator, and the coarsest level is solved
+   * directly. With local refinement a level sees residuals from two sides:
+   * those of its own leaf nodes, and those restricted from the next finer
+   * level.
+   *
+   * With bounds, every single relaxation keeps the prolonged correction within
+   * them: this is the `monotone` coarse correction of the thesis. The bounds of
+   * a coarse function are the tightest of the fine nodes in its support; since
+   * the weights of the prolongation lie in [0,1] and sum up to one, a
+   * correction within them stays within the bounds of the fine nodes (monotone
+   * restriction).
+   *
+   * The recursion is our own: that of deal.II's class Multigrid runs W-cycles
+   * as V-cycles in the releases up to 9.7, and knows nothing of bounds.
+   */
+  template <int dim>
+  class CoarseCycle
+  {
+  public:
+    /** The arguments given by reference are kept. */
+    CoarseCycle(const DoFHandler<dim>       &dof_handler,
+                const NodeBlockMatrix<dim>  &leaf_matrix,
+                const LevelHierarchy<dim>   &hierarchy,
+                const NodalConstraints<dim> &constraints,
+                const Cycle                  cycle,
+                const unsigned int           smoothing_steps);
+
+    /** There is a coarser level at all. */
+    bool
+    has_levels() const
+    {
+      return hierarchy.n_levels() > 1;
+    }
+
+    /** Follows a change of phases. Returns the number of block rows computed.
+     */
+    std::size_t update(const Truncation<dim> &truncation);
+
+    const LevelMatrices<dim> &
+    level_matrices() const
+    {
+      return matrices;
+    }
+
+    /**
+     * Computes a correction.
+     * @param v  on return the correction at the leaf nodes, truncated. Values
+     * of hanging nodes are zero.
+     * @param r  truncated residual at the leaf nodes.
+     */
+    void apply(VectorType &v, const VectorType &r);
+
+    /**
+     * The same, with lower <= v <= upper for each component wherever the node
+     * is not truncated. Zero must be admissible; infinite bounds are allowed.
+     */
+    void apply_within_bounds(VectorType       &v,
+                             const VectorType &r,
+                             const VectorType &lower,
+                             const VectorType &upper);
+
+    std::size_t memory_consumption() const;
+
+  private:
+    const LevelHierarchy<dim>   &hierarchy;
+    const NodalConstraints<dim> &constraints;
+    const unsigned int           cycle_parameter;
+    const unsigned int           smoothing_steps;
+
+    LevelMatrices<dim>                   matrices;
+    std::unique_ptr<CoarsestSolver<dim>> coarsest;
+    Truncation<dim>                      truncation;
+
+    // Per level: right hand side, correction, what the next coarser level had
+    // when the visit began, and vectors of work. The corrections of a W-cycle
+    // accumulate over its visits to a level.
+    std::vector<VectorType> rhs, correction, start, defect, work;
+    VectorType              finest_residual;
+
+    // Per level, only if bounds are in use: bounds of the correction.
+    bool                    bounded = false;
+    std::vector<VectorType> lower, upper;
+
+    const VectorType *leaf_residual = nullptr;
+    const VectorType *leaf_lower    = nullptr;
+    const VectorType *leaf_upper    = nullptr;
+
+    void run(VectorType &v, const VectorType &r);
+
+    void visit(const unsigned int level);
+
+    void relax(const unsigned int level, const bool backwards);
+
+    void relax_within_bounds(const unsigned int level,
+                             const NodeRanges  &nodes,
+                             const bool         backwards);
+
+    void solve_coarsest();
+
+    void restrict_residual(const unsigned int level,
+                           const VectorType  &finer_defect);
+
+    void restrict_bounds(const unsigned int level);
+  };
+} // namespace Friction
+
+#endif

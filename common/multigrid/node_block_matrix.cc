@@ -1,0 +1,121 @@
+#include <common/multigrid/node_block_matrix.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace Friction
+{
+  template <int dim>
+  NodeBlockMatrix<dim>::NodeBlockMatrix(std::vector<std::size_t>  row_starts,
+                                        std::vector<unsigned int> columns)
+    : row_starts(std::move(row_starts))
+    , columns(std::move(columns))
+    , values(this->columns.size() * (dim * dim), 0.)
+  {}
+
+
+
+  template <int dim>
+  std::size_t
+  NodeBlockMatrix<dim>::find(const unsigned int row,
+                             const unsigned int column) const
+  {
+    const std::size_t begin = row_starts[row], end = row_starts[row + 1];
+    if (begin == end || columns[begin] == column)
+      return begin;
+    const auto last = columns.begin() + end;
+    const auto it = std::lower_bound(columns.begin() + begin + 1, last, column);
+    return (it != last && *it == column) ? it - columns.begin() : end;
+  }
+
+
+
+  template <int dim>
+  void
+  NodeBlockMatrix<dim>::vmult(double *y, const double *x) const
+  {
+    for (unsigned int i = 0; i < n_rows(); ++i)
+      {
+        const NodeValue<dim> value = row_times(i, x);
+        for (int d = 0; d < dim; ++d)
+          y[dim * i + d] = value[d];
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  NodeBlockMatrix<dim>::residual(double       *r,
+                                 const double *b,
+                                 const double *x) const
+  {
+    for (unsigned int i = 0; i < n_rows(); ++i)
+      {
+        const NodeValue<dim> value = row_times(i, x);
+        for (int d = 0; d < dim; ++d)
+          r[dim * i + d] = b[dim * i + d] - value[d];
+      }
+  }
+
+
+
+  template <int dim>
+  std::size_t
+  NodeBlockMatrix<dim>::memory_consumption() const
+  {
+    return row_starts.capacity() * sizeof(std::size_t) +
+      columns.capacity() * sizeof(unsigned int) +
+      values.capacity() * sizeof(double);
+  }
+
+
+
+  template <int dim>
+  void
+  gauss_seidel_sweep(const NodeBlockMatrix<dim>        &A,
+                     const std::vector<NodeBlock<dim>> &inverse_diagonal,
+                     const NodeRanges                  &nodes,
+                     const double                      *b,
+                     double                            *x,
+                     const bool                         backwards)
+  {
+    const auto relax = [&](const unsigned int i) {
+      const NodeValue<dim> product = A.row_times(i, x);
+      NodeValue<dim>       defect;
+      for (int d = 0; d < dim; ++d)
+        defect[d] = b[dim * i + d] - product[d];
+      const NodeValue<dim> correction =
+        times<dim>(inverse_diagonal[i].data(), defect.data());
+      for (int d = 0; d < dim; ++d)
+        x[dim * i + d] += correction[d];
+    };
+
+    if (!backwards)
+      for (const auto &range : nodes)
+        for (unsigned int i = range.first; i < range.second; ++i)
+          relax(i);
+    else
+      for (auto range = nodes.rbegin(); range != nodes.rend(); ++range)
+        for (unsigned int i = range->second; i-- > range->first;)
+          relax(i);
+  }
+
+
+
+  template class NodeBlockMatrix<2>;
+  template class NodeBlockMatrix<3>;
+
+  template void gauss_seidel_sweep<2>(const NodeBlockMatrix<2> &,
+                                      const std::vector<NodeBlock<2>> &,
+                                      const NodeRanges &,
+                                      const double *,
+                                      double *,
+                                      const bool);
+  template void gauss_seidel_sweep<3>(const NodeBlockMatrix<3> &,
+                                      const std::vector<NodeBlock<3>> &,
+                                      const NodeRanges &,
+                                      const double *,
+                                      double *,
+                                      const bool);
+} // namespace Friction

@@ -1,0 +1,166 @@
+#ifndef friction_multigrid_node_block_matrix_h
+#define friction_multigrid_node_block_matrix_h
+
+#include <common/multigrid/node_block.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * A sparse matrix of dense dim x dim blocks, one row of blocks per node.
+   *
+   * Everything the method does is nodewise: relaxation solves a dim x dim
+   * problem at each node, truncation acts on the blocks of a node. Storing one
+   * column index per block instead of one per entry also makes a relaxation
+   * sweep read a third less memory, and memory is what a sweep waits for.
+   *
+   * Rows are the locally owned nodes; columns count owned nodes first and ghost
+   * nodes after them, as the local elements of
+   * LinearAlgebra::distributed::Vector do, so that a vector enters as a plain
+   * pointer to its local values, node by node. The first entry of each row is
+   * the diagonal block, the others follow by ascending column.
+   */
+  template <int dim>
+  class NodeBlockMatrix
+  {
+  public:
+    NodeBlockMatrix() = default;
+
+    /**
+     * A zero matrix with given pattern, in compressed row storage.
+     * @param row_starts  n_rows + 1 positions in @p columns.
+     * @param columns     column numbers of the blocks, the diagonal first.
+     */
+    NodeBlockMatrix(std::vector<std::size_t>  row_starts,
+                    std::vector<unsigned int> columns);
+
+    unsigned int
+    n_rows() const
+    {
+      return row_starts.empty() ? 0 : row_starts.size() - 1;
+    }
+
+    std::size_t
+    n_blocks() const
+    {
+      return columns.size();
+    }
+
+    /** The position of the first block of a row, which is the diagonal one. */
+    std::size_t
+    row_begin(const unsigned int row) const
+    {
+      return row_starts[row];
+    }
+
+    std::size_t
+    row_end(const unsigned int row) const
+    {
+      return row_starts[row + 1];
+    }
+
+    unsigned int
+    column(const std::size_t position) const
+    {
+      return columns[position];
+    }
+
+    /** The dim*dim values of the block at a position, column by column. */
+    double *
+    block(const std::size_t position)
+    {
+      return values.data() + position * (dim * dim);
+    }
+
+    const double *
+    block(const std::size_t position) const
+    {
+      return values.data() + position * (dim * dim);
+    }
+
+    /** The position of block (row,column), or row_end(row) if there is none. */
+    std::size_t find(const unsigned int row, const unsigned int column) const;
+
+    /** The value of row @p row of the product A x. */
+    NodeValue<dim> row_times(const unsigned int row, const double *x) const;
+
+    /** y = A x. */
+    void vmult(double *y, const double *x) const;
+
+    /** r = b - A x. */
+    void residual(double *r, const double *b, const double *x) const;
+
+    /** Memory in bytes. */
+    std::size_t memory_consumption() const;
+
+  private:
+    std::vector<std::size_t>  row_starts;
+    std::vector<unsigned int> columns;
+    std::vector<double>       values;
+  };
+
+
+
+  /**
+   * Nodes to be relaxed, as ranges [first,second) of consecutive numbers: the
+   * sweep then needs no test per node.
+   */
+  using NodeRanges = std::vector<std::pair<unsigned int, unsigned int>>;
+
+  /**
+   * One block Gauss-Seidel sweep for A x = b over the given nodes, in ascending
+   * order or, backwards, in descending order.
+   * @param inverse_diagonal  one block per row: the (pseudo-)inverse of the
+   *                          diagonal block; a zero block leaves its node
+   * alone.
+   */
+  template <int dim>
+  void gauss_seidel_sweep(const NodeBlockMatrix<dim>        &A,
+                          const std::vector<NodeBlock<dim>> &inverse_diagonal,
+                          const NodeRanges                  &nodes,
+                          const double                      *b,
+                          double                            *x,
+                          const bool                         backwards);
+
+
+
+  // The innermost loop of everything, hence inline. In two dimensions the
+  // compiler's own vector type makes each column of a block one instruction.
+  template <int dim>
+  inline NodeValue<dim>
+  NodeBlockMatrix<dim>::row_times(const unsigned int row, const double *x) const
+  {
+    const std::size_t   end = row_starts[row + 1];
+    const double       *a   = values.data() + row_starts[row] * (dim * dim);
+    const unsigned int *c   = columns.data();
+    NodeValue<dim>      y{};
+    if constexpr (dim == 2)
+      {
+        typedef double Pair __attribute__((vector_size(16), aligned(8)));
+        Pair           sum0 = {0., 0.}, sum1 = {0., 0.};
+        for (std::size_t e = row_starts[row]; e < end; ++e, a += 4)
+          {
+            const double *xe = x + 2 * static_cast<std::size_t>(c[e]);
+            const Pair    x0 = {xe[0], xe[0]}, x1 = {xe[1], xe[1]};
+            sum0 += *reinterpret_cast<const Pair *>(a) * x0;
+            sum1 += *reinterpret_cast<const Pair *>(a + 2) * x1;
+          }
+        sum0 += sum1;
+        y[0] = sum0[0];
+        y[1] = sum0[1];
+      }
+    else
+      for (std::size_t e = row_starts[row]; e < end; ++e, a += dim * dim)
+        {
+          const double *xe = x + dim * static_cast<std::size_t>(c[e]);
+          for (int k = 0; k < dim; ++k)
+            for (int r = 0; r < dim; ++r)
+              y[r] += a[k * dim + r] * xe[k];
+        }
+    return y;
+  }
+} // namespace Friction
+
+#endif

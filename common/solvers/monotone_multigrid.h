@@ -1,0 +1,140 @@
+#ifndef friction_solvers_monotone_multigrid_h
+#define friction_solvers_monotone_multigrid_h
+
+#include <common/contact/contact_state.h>
+#include <common/multigrid/coarse_cycle.h>
+#include <common/multigrid/linearization.h>
+#include <common/multigrid/monotone_smoother.h>
+#include <common/solvers/discrete_problem.h>
+#include <common/solvers/recombination.h>
+#include <common/solvers/settings.h>
+#include <common/solvers/tresca_functional.h>
+
+#include <functional>
+#include <vector>
+
+namespace Friction
+{
+  /** What happened in one multigrid cycle. */
+  struct CycleInfo
+  {
+    double increment; ///< energy norm of the increment, relative to u's
+    double energy;    ///< of the smoothed iterate
+    double damping;   ///< step length of the coarse correction
+    double truncated; ///< components held at contact nodes
+    double residual;  ///< Euclidean norm of the truncated residual
+  };
+
+  /** What a multigrid iteration has come to. */
+  struct MultigridResult
+  {
+    bool                   converged = false;
+    std::vector<CycleInfo> cycles;
+
+    /** Mean contraction of the increments, per cycle; zero if there were fewer
+     * than two. */
+    double contraction() const;
+  };
+
+  /** Seconds of wall time by part, and sizes of work; summed over all calls. */
+  struct MultigridCost
+  {
+    double       leading_sweeps    = 0;
+    double       coarse_correction = 0;
+    double       matrix_updates    = 0;
+    double       line_search       = 0;
+    double       total             = 0;
+    std::size_t  n_updated_rows    = 0;
+    unsigned int n_leading_sweeps  = 0;
+  };
+
+
+
+  /**
+   * The monotone multigrid iteration for contact with friction. One step is
+   * composed of five parts:
+   * <ol>
+   * <li> the leading relaxation, MonotoneSmoother,
+   * <li> phases, truncation and constrained Newton terms, Linearization,
+   * <li> the coarse correction, CoarseCycle,
+   * <li> recombination with the last corrections, Recombination
+   * <li> projection and line search, TrescaFunctional,
+   * </ol>
+   * and the relaxation once more, backwards. With given normal forces (Tresca)
+   * the energy never increases and the iterates stay admissible.
+   */
+  template <int dim>
+  class MonotoneMultigrid
+  {
+  public:
+    /** Is told the number of cycles done and the last relative increment. */
+    using Progress = std::function<void(const unsigned int, const double)>;
+
+    /** What the references in @p problem refer to, and @p hierarchy, must
+     * outlive the object. */
+    MonotoneMultigrid(const DoFHandler<dim>      &dof_handler,
+                      const LevelHierarchy<dim>  &hierarchy,
+                      const DiscreteProblem<dim> &problem,
+                      const SolverSettings       &settings);
+
+    /**
+     * Iterates until the relative increment is at most the inner tolerance.
+     *
+     * @param u  initial guess and solution; must be admissible and have the
+     *           prescribed values. Values at hanging nodes are not touched.
+     * @param state  likewise.
+     * @param update_normal_forces  Algorithm 3: Coulomb friction, whose normal
+     *           forces are updated inside the leading relaxation. Otherwise
+     * they stay as they are.
+     */
+    MultigridResult solve(VectorType     &u,
+                          ContactState   &state,
+                          const bool      update_normal_forces,
+                          const Progress &progress = {});
+
+    /** Sets the normal forces of @p state to those of @p u at nodes in contact
+     * and to zero elsewhere; returns the residual f - A u. */
+    VectorType update_normal_forces(ContactState     &state,
+                                    const VectorType &u) const;
+
+    const MultigridCost &
+    cost() const
+    {
+      return costs;
+    }
+
+    const MonotoneSmoother<dim> &
+    leading_smoother() const
+    {
+      return smoother;
+    }
+
+    CoarseCycle<dim> &
+    coarse_correction()
+    {
+      return coarse;
+    }
+
+    std::size_t memory_consumption() const;
+
+  private:
+    const DiscreteProblem<dim>  problem;
+    const SolverSettings        settings;
+    const TrescaFunctional<dim> functional;
+    const MonotoneSmoother<dim> smoother;
+    Linearization<dim>          linearization;
+    CoarseCycle<dim>            coarse;
+    MultigridCost               costs;
+
+    void set_normal_forces(ContactState     &state,
+                           const VectorType &residual) const;
+
+    double correct(VectorType         &u,
+                   const VectorType   &residual,
+                   const ContactState &state,
+                   Recombination<dim> &recombination,
+                   CycleInfo          &info);
+  };
+} // namespace Friction
+
+#endif

@@ -1,0 +1,136 @@
+#include <common/solvers/recombination.h>
+
+#include <Eigen/Dense>
+
+#include <cmath>
+
+namespace Friction
+{
+  template <int dim>
+  Recombination<dim>::Recombination(const unsigned int n_steps)
+    : n_steps(n_steps)
+  {}
+
+
+
+  template <int dim>
+  void
+  Recombination<dim>::clear()
+  {
+    last_iterate.reinit(0);
+    last_residual.reinit(0);
+    steps.clear();
+    products.clear();
+  }
+
+
+
+  template <int dim>
+  void
+  Recombination<dim>::add_iterate(const VectorType &u,
+                                  const VectorType &residual)
+  {
+    if (n_steps == 0)
+      return;
+    if (last_iterate.size() > 0)
+      {
+        // The vectors of the oldest step are used again for the new one.
+        if (steps.size() == n_steps)
+          {
+            steps.push_front(std::move(steps.back()));
+            products.push_front(std::move(products.back()));
+            steps.pop_back();
+            products.pop_back();
+          }
+        else
+          {
+            steps.emplace_front(u);
+            products.emplace_front(u);
+          }
+        steps.front() = u;
+        steps.front() -= last_iterate;
+        products.front() = last_residual;
+        products.front() -= residual;
+      }
+    last_iterate  = u;
+    last_residual = residual;
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  Recombination<dim>::improve(VectorType            &v,
+                              VectorType            &Av,
+                              const VectorType      &r,
+                              const Truncation<dim> &truncation) const
+  {
+    std::vector<const VectorType *> basis = {&v}, images = {&Av};
+
+    // Steps in the free subspace, up to the rounding of the iterates
+    // themselves.
+    const double accuracy =
+      last_iterate.size() > 0 ? 1e-13 * last_iterate.linfty_norm() : 0.;
+    for (unsigned int i = 0; i < steps.size(); ++i)
+      {
+        double deviation = 0;
+        for (const unsigned int node : truncation.special_nodes())
+          {
+            const double        *s = steps[i].begin() + dim * node;
+            const NodeValue<dim> Ts =
+              times<dim>(truncation.projector(node).data(), s);
+            for (unsigned int d = 0; d < dim; ++d)
+              deviation = std::max(deviation, std::abs(Ts[d] - s[d]));
+          }
+        if (deviation <= accuracy)
+          {
+            basis.push_back(&steps[i]);
+            images.push_back(&products[i]);
+          }
+      }
+    const unsigned int n = basis.size();
+    if (n == 1)
+      return 0;
+
+    Eigen::MatrixXd gram(n, n);
+    Eigen::VectorXd rhs(n);
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        rhs(i) = r * *basis[i];
+        for (unsigned int j = 0; j <= i; ++j)
+          gram(i, j) = gram(j, i) = *basis[i] * *images[j];
+      }
+    // Scaled to a unit diagonal; directions that are numerically dependent are
+    // left out by the pivoted factorisation.
+    Eigen::VectorXd scale(n);
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        if (!(gram(i, i) > 0))
+          return 0;
+        scale(i) = 1. / std::sqrt(gram(i, i));
+      }
+    const Eigen::MatrixXd scaled =
+      scale.asDiagonal() * gram * scale.asDiagonal();
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
+    qr.setThreshold(1e-10);
+    const Eigen::VectorXd coefficients =
+      scale.asDiagonal() * qr.solve(scale.asDiagonal() * rhs);
+    if (!coefficients.allFinite())
+      return 0;
+
+    v *= coefficients(0);
+    Av *= coefficients(0);
+    for (unsigned int i = 1; i < n; ++i)
+      {
+        v.add(coefficients(i), *basis[i]);
+        Av.add(coefficients(i), *images[i]);
+      }
+    truncation.apply(v.begin());
+    return n - 1;
+  }
+
+
+
+  template class Recombination<2>;
+  template class Recombination<3>;
+} // namespace Friction

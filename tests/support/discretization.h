@@ -1,0 +1,259 @@
+#ifndef friction_tests_support_discretization_h
+#define friction_tests_support_discretization_h
+
+#include <common/compatibility.h>
+#include <common/contact/contact_boundary.h>
+#include <common/contact/nodal_constraints.h>
+#include <common/multigrid/leaf_matrix.h>
+#include <common/multigrid/level_hierarchy.h>
+#include <common/scene/scene.h>
+#include <common/solvers/discrete_problem.h>
+
+#include <deal.II/base/quadrature_lib.h>
+
+#include <deal.II/distributed/tria.h>
+
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/dofs/dof_tools.h>
+
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_system.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/fe/mapping_q.h>
+
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include <deal.II/numerics/vector_tools.h>
+
+#include <memory>
+
+namespace Tests
+{
+  using namespace dealii;
+  using namespace Friction;
+
+  /**
+   * A mesh as all tests need it.
+   */
+  template <int dim>
+  std::unique_ptr<parallel::distributed::Triangulation<dim>>
+  make_triangulation()
+  {
+    return std::make_unique<parallel::distributed::Triangulation<dim>>(
+      MPI_COMM_WORLD,
+      Triangulation<dim>::limit_level_difference_at_vertices,
+      parallel::distributed::Triangulation<dim>::construct_multigrid_hierarchy);
+  }
+
+
+
+  /**
+   * A scene discretised on a given mesh: what the step programs do in their
+   * setup and assembly functions, in one object, for tests that look at one part
+   * of the solver.
+   */
+  template <int dim>
+  class Discretization
+  {
+  public:
+    Discretization(const Scene<dim> &scene, const Triangulation<dim> &mesh)
+      : dof_handler(mesh)
+      , mapping(1)
+      , fe(FE_Q<dim>(1), dim)
+    {
+      dof_handler.distribute_dofs(fe);
+      dof_handler.distribute_mg_dofs();
+      IndexSet relevant;
+      DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+
+      hanging =
+        Compatibility::make_constraints(dof_handler.locally_owned_dofs(),
+                                        relevant);
+      DoFTools::make_hanging_node_constraints(dof_handler, hanging);
+      hanging.close();
+      AffineConstraints<double> dirichlet =
+        Compatibility::make_constraints(dof_handler.locally_owned_dofs(),
+                                        relevant);
+      for (const auto &condition : scene.dirichlet_conditions())
+        VectorTools::interpolate_boundary_values(mapping,
+                                                 dof_handler,
+                                                 condition.boundary_id,
+                                                 *condition.displacement,
+                                                 dirichlet,
+                                                 condition.components);
+      for (const auto &pinned : scene.pinned_points())
+        for (const auto &cell : dof_handler.active_cell_iterators())
+          for (const unsigned int v : cell->vertex_indices())
+            if (cell->vertex(v).distance(pinned.point) <
+                1e-6 * cell->diameter())
+              {
+                const auto dof = cell->vertex_dof_index(v, pinned.component);
+                if (!dirichlet.is_constrained(dof))
+                  {
+                    dirichlet.add_line(dof);
+                    dirichlet.set_inhomogeneity(dof, pinned.value);
+                  }
+              }
+      dirichlet.close();
+
+      constraints = std::make_unique<NodalConstraints<dim>>(dof_handler,
+                                                            hanging,
+                                                            dirichlet);
+      assemble(scene);
+      contact = std::make_unique<ContactBoundary<dim>>(mapping,
+                                                       dof_handler,
+                                                       hanging,
+                                                       *constraints,
+                                                       scene.contact_boundary_id(),
+                                                       scene.obstacle(),
+                                                       scene.contact_normal());
+      hierarchy =
+        std::make_unique<LevelHierarchy<dim>>(dof_handler, *constraints);
+      friction_law         = scene.friction_law();
+      friction_coefficient = scene.friction_coefficient();
+    }
+
+    DiscreteProblem<dim>
+    problem() const
+    {
+      return {matrix,
+              forces,
+              *constraints,
+              *contact,
+              friction_law,
+              friction_coefficient};
+    }
+
+    /** Zero, but for prescribed values, and moved out of the obstacle. */
+    VectorType
+    admissible_start() const
+    {
+      VectorType u(constraints->partitioner());
+      constraints->impose(u);
+      for (const ContactNode<dim> &node : *contact)
+        {
+          const double excess = normal_component(node, u) - node.gap;
+          if (excess > 0)
+            for (unsigned int d = 0; d < dim; ++d)
+              u.local_element(dim * node.node + d) -= excess * node.normal()[d];
+        }
+      return u;
+    }
+
+    DoFHandler<dim>                        dof_handler;
+    MappingQ<dim>                          mapping;
+    FESystem<dim>                          fe;
+    AffineConstraints<double>              hanging;
+    std::unique_ptr<NodalConstraints<dim>> constraints;
+    NodeBlockMatrix<dim>                   matrix;
+    VectorType                             forces;
+    std::unique_ptr<ContactBoundary<dim>>  contact;
+    std::unique_ptr<LevelHierarchy<dim>>   hierarchy;
+    FrictionLaw                            friction_law;
+    double                                 friction_coefficient;
+
+  private:
+    void
+    assemble(const Scene<dim> &scene)
+    {
+      IndexSet relevant;
+      DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+      DynamicSparsityPattern pattern(relevant);
+      DoFTools::make_sparsity_pattern(dof_handler, pattern, hanging, false);
+      TrilinosWrappers::SparseMatrix stiffness;
+      stiffness.reinit(dof_handler.locally_owned_dofs(),
+                       dof_handler.locally_owned_dofs(),
+                       pattern,
+                       Compatibility::mpi_communicator(dof_handler));
+      forces.reinit(constraints->partitioner());
+
+      const QGauss<dim>     quadrature(2);
+      const QGauss<dim - 1> face_quadrature(4);
+      FEValues<dim>         fe_values(mapping,
+                              fe,
+                              quadrature,
+                              update_gradients | update_values |
+                                update_quadrature_points | update_JxW_values);
+      FEFaceValues<dim>     face_values(mapping,
+                                    fe,
+                                    face_quadrature,
+                                    update_values | update_quadrature_points |
+                                      update_JxW_values);
+      const unsigned int    n_dofs = fe.n_dofs_per_cell();
+      FullMatrix<double>    cell_matrix(n_dofs, n_dofs);
+      Vector<double>        cell_rhs(n_dofs), value(dim);
+      std::vector<types::global_dof_index> indices(n_dofs);
+      const double                         lambda = scene.material().lambda();
+      const double                         mu     = scene.material().mu();
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            cell_matrix = 0.;
+            cell_rhs    = 0.;
+            fe_values.reinit(cell);
+            for (const unsigned int q : fe_values.quadrature_point_indices())
+              {
+                for (unsigned int i = 0; i < n_dofs; ++i)
+                  {
+                    const unsigned int   ci = fe.system_to_component_index(i).first;
+                    const Tensor<1, dim> gi = fe_values.shape_grad(i, q);
+                    for (unsigned int j = 0; j < n_dofs; ++j)
+                      {
+                        const unsigned int cj =
+                          fe.system_to_component_index(j).first;
+                        const Tensor<1, dim> gj = fe_values.shape_grad(j, q);
+                        cell_matrix(i, j) +=
+                          (lambda * gi[ci] * gj[cj] + mu * gi[cj] * gj[ci] +
+                           (ci == cj ? mu * (gi * gj) : 0.)) *
+                          fe_values.JxW(q);
+                      }
+                  }
+                if (scene.body_force() != nullptr)
+                  {
+                    scene.body_force()->vector_value(
+                      fe_values.quadrature_point(q), value);
+                    for (unsigned int i = 0; i < n_dofs; ++i)
+                      cell_rhs(i) += value[fe.system_to_component_index(i).first] *
+                                     fe_values.shape_value(i, q) *
+                                     fe_values.JxW(q);
+                  }
+              }
+            for (const unsigned int f : cell->face_indices())
+              if (cell->face(f)->at_boundary())
+                for (const auto &condition : scene.traction_conditions())
+                  if (condition.boundary_id == cell->face(f)->boundary_id())
+                    {
+                      face_values.reinit(cell, f);
+                      for (const unsigned int q :
+                           face_values.quadrature_point_indices())
+                        {
+                          condition.traction->vector_value(
+                            face_values.quadrature_point(q), value);
+                          for (unsigned int i = 0; i < n_dofs; ++i)
+                            cell_rhs(i) +=
+                              value[fe.system_to_component_index(i).first] *
+                              face_values.shape_value(i, q) * face_values.JxW(q);
+                        }
+                    }
+            cell->get_dof_indices(indices);
+            hanging.distribute_local_to_global(
+              cell_matrix, cell_rhs, indices, stiffness, forces);
+          }
+      stiffness.compress(VectorOperation::add);
+      forces.compress(VectorOperation::add);
+      matrix = make_node_block_matrix<dim>(stiffness, *constraints);
+    }
+  };
+
+
+
+  /** Prints the outcome of a check: only that, so that no digits are compared. */
+  inline void
+  check(const bool condition, const std::string &what)
+  {
+    std::cout << (condition ? "ok      " : "FAILED  ") << what << std::endl;
+  }
+} // namespace Tests
+
+#endif
