@@ -8,7 +8,7 @@
 namespace Friction
 {
   /**
-   * Set the refinement flag of all cells with $\eta_K>\theta\max_L\eta_L$.
+   * Set the refinement flag of all cells with $\eta_K\ge\theta\max_L\eta_L$.
    * Returns the number of cells marked on all processes: none if all errors are
    * 0.
    *

@@ -107,7 +107,7 @@ namespace Friction
    * CycleRecord under
    * `/cycles`, each one-dimensional; in `/contact/level_NN` the datasets
    * `point`, `normal`, `displacement`, `force` (nodes $\times$ dim) and `gap`,
-   * `measure`, `state` (nodes $\times$ 1). A level without contact nodes has no
+   * `measure`, `state` (one-dimensional). A level without contact nodes has no
    * group there, since HDF5 through deal.II has no empty datasets; for the same
    * reason `/cycles` exists only once there was a cycle.
    *

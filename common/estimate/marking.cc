@@ -1,0 +1,132 @@
+#include <common/compatibility.h>
+#include <common/estimate/marking.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <cmath>
+
+namespace Friction
+{
+  using namespace dealii;
+
+  namespace
+  {
+    // Errors are stored in single precision, and sums in an order that
+    // depends on the mesh: what agrees to this is the same.
+    constexpr double rounding = 1e-4;
+
+
+
+    template <int dim>
+    double
+    largest_error(
+      const parallel::distributed::Triangulation<dim> &triangulation,
+      const Vector<float>                             &cell_errors)
+    {
+      AssertDimension(cell_errors.size(), triangulation.n_active_cells());
+
+      double largest = 0.;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          largest = std::max(
+            largest,
+            static_cast<double>(cell_errors(cell->active_cell_index())));
+      return Utilities::MPI::max(
+        largest, Compatibility::mpi_communicator(triangulation));
+    }
+
+
+
+    template <int dim>
+    unsigned int
+    mark_above(parallel::distributed::Triangulation<dim> &triangulation,
+               const Vector<float>                       &cell_errors,
+               const double                               threshold)
+    {
+      unsigned int n_marked = 0;
+      if (threshold > 0.)
+        for (const auto &cell : triangulation.active_cell_iterators())
+          if (cell->is_locally_owned() &&
+              cell_errors(cell->active_cell_index()) >= threshold)
+            {
+              cell->set_refine_flag();
+              ++n_marked;
+            }
+      return Utilities::MPI::sum(
+        n_marked, Compatibility::mpi_communicator(triangulation));
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  unsigned int
+  mark_by_maximum(parallel::distributed::Triangulation<dim> &triangulation,
+                  const Vector<float>                       &cell_errors,
+                  const double                               theta)
+  {
+    Assert(theta > 0. && theta <= 1., ExcMessage("theta must be in (0,1]."));
+    return mark_above(triangulation,
+                      cell_errors,
+                      (1. - rounding) * theta *
+                        largest_error(triangulation, cell_errors));
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  mark_bulk(parallel::distributed::Triangulation<dim> &triangulation,
+            const Vector<float>                       &cell_errors,
+            const double                               theta)
+  {
+    Assert(theta > 0. && theta <= 1., ExcMessage("theta must be in (0,1]."));
+
+    const auto bulk_above = [&](const double threshold) {
+      double sum = 0.;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            const double error = cell_errors(cell->active_cell_index());
+            if (error >= threshold)
+              sum += error * error;
+          }
+      return Utilities::MPI::sum(
+        sum, Compatibility::mpi_communicator(triangulation));
+    };
+
+    // Sorting the errors of all processes would mean to send them around.
+    // Halving the interval in which the threshold lies needs one sum per step;
+    // in the logarithm, because errors differ by orders of magnitude.
+    const double largest = largest_error(triangulation, cell_errors);
+    if (largest == 0.)
+      return 0;
+    const double wanted = (1. - 1e-12) * theta * bulk_above(0.);
+    double       upper  = largest * (1. + rounding);
+    double       lower  = largest * 1e-8;
+    while (upper > lower * (1. + 0.5 * rounding))
+      {
+        const double middle = std::sqrt(upper * lower);
+        (bulk_above(middle) >= wanted ? lower : upper) = middle;
+      }
+
+    return mark_above(triangulation, cell_errors, (1. - rounding) * lower);
+  }
+
+
+
+  template unsigned int
+  mark_by_maximum<2>(parallel::distributed::Triangulation<2> &,
+                     const Vector<float> &,
+                     const double);
+  template unsigned int
+  mark_by_maximum<3>(parallel::distributed::Triangulation<3> &,
+                     const Vector<float> &,
+                     const double);
+  template unsigned int mark_bulk<2>(parallel::distributed::Triangulation<2> &,
+                                     const Vector<float> &,
+                                     const double);
+  template unsigned int mark_bulk<3>(parallel::distributed::Triangulation<3> &,
+                                     const Vector<float> &,
+                                     const double);
+} // namespace Friction

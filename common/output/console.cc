@@ -1,0 +1,115 @@
+#include <common/output/console.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+
+namespace Friction
+{
+  Console::Console(std::ostream &out, const Times times, const bool silent)
+    : out(out)
+    , show_times(times == Times::shown)
+    , silent(silent)
+    , terminal(&out == &std::cout && ::isatty(STDOUT_FILENO) != 0)
+    , level_start(Clock::now())
+    , last_progress(level_start)
+  {}
+
+
+
+  void
+  Console::level_complete(const LevelRecord &record)
+  {
+    // The next level starts here.
+    level_start   = Clock::now();
+    last_progress = level_start;
+    if (silent)
+      return;
+
+    clear_progress();
+
+    std::ostringstream line;
+    if (!header_printed)
+      {
+        line << "level     cells      dofs  contact   sticky  outer  cycles"
+             << "   rate        energy" << (show_times ? "   seconds" : "")
+             << '\n';
+        header_printed = true;
+      }
+
+    line << std::setw(5) << record.level << std::setw(10) << record.cells
+         << std::setw(10) << record.dofs << std::setw(9) << record.contact_nodes
+         << std::setw(9) << record.sticky_nodes << std::setw(7)
+         << record.outer_iterations << std::setw(8) << record.cycles
+         << std::fixed << std::setprecision(3) << std::setw(7)
+         << record.contraction << std::scientific << std::setprecision(5)
+         << std::setw(14) << record.energy;
+    if (show_times)
+      line << std::fixed << std::setprecision(2) << std::setw(10)
+           << record.setup_seconds + record.solve_seconds;
+
+    // Flushed, since the next row may take long and the output may be a pipe.
+    out << line.str() << std::endl;
+  }
+
+
+
+  void
+  Console::progress(const unsigned int level,
+                    const unsigned int cycle,
+                    const double       increment)
+  {
+    if (silent || !show_times)
+      return;
+
+    const Clock::time_point now = Clock::now();
+    using Seconds               = std::chrono::duration<double>;
+    if (Seconds(now - level_start).count() < 2.)
+      return;
+    // A terminal shows the present state, a log file should stay short.
+    if (Seconds(now - last_progress).count() < (terminal ? 0.2 : 20.))
+      return;
+    last_progress = now;
+
+    std::ostringstream line;
+    line << "  level " << level << ": cycle " << cycle << ", increment "
+         << std::scientific << std::setprecision(1) << increment;
+    if (terminal)
+      {
+        const std::string text = line.str();
+        out << '\r' << text
+            << std::string(progress_width > text.size()
+                             ? progress_width - text.size()
+                             : 0,
+                           ' ')
+            << std::flush;
+        progress_width = std::max(progress_width, text.size());
+      }
+    else
+      out << line.str() << std::endl;
+  }
+
+
+
+  void
+  Console::note(const std::string &text)
+  {
+    if (silent)
+      return;
+    clear_progress();
+    out << text << std::endl;
+  }
+
+
+
+  void
+  Console::clear_progress()
+  {
+    if (progress_width == 0)
+      return;
+    out << '\r' << std::string(progress_width, ' ') << '\r';
+    progress_width = 0;
+  }
+} // namespace Friction

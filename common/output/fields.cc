@@ -1,0 +1,416 @@
+#include <common/compatibility.h>
+#include <common/output/fields.h>
+
+#include <deal.II/base/data_out_base.h>
+
+#include <deal.II/numerics/data_out.h>
+#include <deal.II/numerics/data_postprocessor.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+namespace Friction
+{
+  using namespace dealii;
+
+  namespace
+  {
+    using NonscalarRanges = std::vector<
+      std::tuple<unsigned int,
+                 unsigned int,
+                 std::string,
+                 DataComponentInterpretation::DataComponentInterpretation>>;
+
+
+
+    DataOutBase::VtkFlags
+    vtk_flags(const unsigned int level)
+    {
+      DataOutBase::VtkFlags flags;
+      flags.time  = level;
+      flags.cycle = level;
+      // The same run shall give the same file.
+      flags.print_date_and_time = false;
+      using CompressionLevel    = decltype(flags.compression_level);
+      flags.compression_level   = CompressionLevel::best_speed;
+      return flags;
+    }
+
+
+
+    std::string
+    file_name(const std::string &what, const unsigned int level)
+    {
+      return what + (level < 10 ? "-0" : "-") + std::to_string(level);
+    }
+
+
+
+    std::string
+    piece_name(const std::string &what,
+               const unsigned int level,
+               const unsigned int rank)
+    {
+      return file_name(what, level) + "." + Utilities::int_to_string(rank, 4) +
+        ".vtu";
+    }
+
+
+
+    std::vector<std::string>
+    piece_names(const std::string &what,
+                const unsigned int level,
+                const unsigned int n_processes)
+    {
+      std::vector<std::string> names;
+      for (unsigned int rank = 0; rank < n_processes; ++rank)
+        names.push_back(piece_name(what, level, rank));
+      return names;
+    }
+
+
+
+    // Stresses follow from the gradients of the displacement, so deal.II can
+    // evaluate them for us where it needs them.
+    template <int dim>
+    class Stresses : public DataPostprocessor<dim>
+    {
+    public:
+      Stresses(const double lambda, const double mu)
+        : lambda(lambda)
+        , mu(mu)
+      {}
+
+      void
+      evaluate_vector_field(
+        const DataPostprocessorInputs::Vector<dim> &inputs,
+        std::vector<Vector<double>> &computed_quantities) const override
+      {
+        for (unsigned int q = 0; q < computed_quantities.size(); ++q)
+          {
+            // Always a 3x3 tensor: in plane strain the third normal strain
+            // is zero, but the third normal stress is not.
+            SymmetricTensor<2, 3> strain;
+            for (unsigned int i = 0; i < dim; ++i)
+              for (unsigned int j = i; j < dim; ++j)
+                strain[i][j] = 0.5 *
+                  (inputs.solution_gradients[q][i][j] +
+                   inputs.solution_gradients[q][j][i]);
+            const SymmetricTensor<2, 3> stress = 2. * mu * strain +
+              lambda * trace(strain) * unit_symmetric_tensor<3>();
+
+            Vector<double> &values = computed_quantities[q];
+            values[0]              = stress[0][0];
+            values[1]              = stress[1][1];
+            values[2]              = stress[2][2];
+            values[3]              = stress[0][1];
+            if (dim == 3)
+              {
+                values[4] = stress[1][2];
+                values[5] = stress[0][2];
+              }
+            values[values.size() - 1] =
+              std::sqrt(1.5) * deviator(stress).norm();
+          }
+      }
+
+      std::vector<std::string>
+      get_names() const override
+      {
+        std::vector<std::string> names = {
+          "stress_xx", "stress_yy", "stress_zz", "stress_xy"};
+        if (dim == 3)
+          {
+            names.emplace_back("stress_yz");
+            names.emplace_back("stress_xz");
+          }
+        names.emplace_back("von_Mises_stress");
+        return names;
+      }
+
+      std::vector<DataComponentInterpretation::DataComponentInterpretation>
+      get_data_component_interpretation() const override
+      {
+        return std::vector<
+          DataComponentInterpretation::DataComponentInterpretation>(
+          get_names().size(), DataComponentInterpretation::component_is_scalar);
+      }
+
+      UpdateFlags
+      get_needed_update_flags() const override
+      {
+        return update_gradients;
+      }
+
+    private:
+      const double lambda;
+      const double mu;
+    };
+
+
+
+    // What is shown in a point of the contact boundary: four vectors, then
+    // four numbers.
+    constexpr unsigned int n_contact_vectors = 4;
+    constexpr unsigned int n_contact_scalars = 4;
+
+    const std::array<std::string, n_contact_vectors> contact_vector_names = {
+      {"displacement", "traction", "tangential_traction", "normal"}};
+    const std::array<std::string, n_contact_scalars> contact_scalar_names = {
+      {"pressure", "gap", "distance", "state"}};
+
+
+
+    template <int dim>
+    std::vector<std::string>
+    contact_data_names()
+    {
+      std::vector<std::string> names;
+      for (const std::string &name : contact_vector_names)
+        for (unsigned int c = 0; c < dim; ++c)
+          names.push_back(name);
+      names.insert(
+        names.end(), contact_scalar_names.begin(), contact_scalar_names.end());
+      return names;
+    }
+
+
+
+    template <int dim>
+    NonscalarRanges
+    contact_data_ranges()
+    {
+      NonscalarRanges ranges;
+      for (unsigned int v = 0; v < n_contact_vectors; ++v)
+        ranges.emplace_back(
+          v * dim,
+          (v + 1) * dim - 1,
+          contact_vector_names[v],
+          DataComponentInterpretation::component_is_part_of_vector);
+      return ranges;
+    }
+
+
+
+    template <int dim>
+    using ContactData =
+      std::array<double, n_contact_vectors * dim + n_contact_scalars>;
+
+    template <int dim>
+    ContactData<dim>
+    contact_data(const ContactRecord<dim> &record)
+    {
+      Tensor<1, dim> traction;
+      if (record.measure > 0.)
+        traction = record.force / record.measure;
+      const double pressure = -(traction * record.normal);
+
+      ContactData<dim> data;
+      for (unsigned int c = 0; c < dim; ++c)
+        {
+          data[c]           = record.displacement[c];
+          data[dim + c]     = traction[c];
+          data[2 * dim + c] = traction[c] + pressure * record.normal[c];
+          data[3 * dim + c] = record.normal[c];
+        }
+      data[4 * dim]     = pressure;
+      data[4 * dim + 1] = record.gap;
+      data[4 * dim + 2] = record.gap - record.displacement * record.normal;
+      data[4 * dim + 3] = record.state;
+      return data;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  FieldWriter<dim>::FieldWriter(const RunDirectory      &directory,
+                                const double             lambda,
+                                const double             mu,
+                                const types::boundary_id contact_boundary)
+    : directory(directory)
+    , lambda(lambda)
+    , mu(mu)
+    , contact_boundary(contact_boundary)
+  {}
+
+
+
+  template <int dim>
+  void
+  FieldWriter<dim>::write_level(const unsigned int               level,
+                                const Mapping<dim>              &mapping,
+                                const DoFHandler<dim>           &dof_handler,
+                                const VectorType                &displacement,
+                                const AffineConstraints<double> &constraints,
+                                const std::vector<ContactRecord<dim>> &contact,
+                                const Vector<float> *cell_errors)
+  {
+    write_body(level, mapping, dof_handler, displacement, cell_errors);
+
+    // Whether there is a contact boundary is a question to all processes.
+    const MPI_Comm communicator = Compatibility::mpi_communicator(dof_handler);
+    if (Utilities::MPI::max<unsigned int>(contact.empty() ? 0 : 1,
+                                          communicator) > 0)
+      write_contact_boundary(
+        level, mapping, dof_handler, displacement, constraints, contact);
+  }
+
+
+
+  template <int dim>
+  void
+  FieldWriter<dim>::write_body(const unsigned int     level,
+                               const Mapping<dim>    &mapping,
+                               const DoFHandler<dim> &dof_handler,
+                               const VectorType      &displacement,
+                               const Vector<float>   *cell_errors)
+  {
+    const Stresses<dim> stresses(lambda, mu);
+
+    DataOut<dim> data_out;
+    data_out.attach_dof_handler(dof_handler);
+    data_out.add_data_vector(
+      displacement,
+      std::vector<std::string>(dim, "displacement"),
+      DataOut<dim>::type_dof_data,
+      std::vector<DataComponentInterpretation::DataComponentInterpretation>(
+        dim, DataComponentInterpretation::component_is_part_of_vector));
+    data_out.add_data_vector(displacement, stresses);
+    if (cell_errors != nullptr)
+      data_out.add_data_vector(
+        *cell_errors, "estimated_error", DataOut<dim>::type_cell_data);
+    data_out.set_flags(vtk_flags(level));
+    data_out.build_patches(mapping);
+
+    const MPI_Comm communicator = Compatibility::mpi_communicator(dof_handler);
+    const unsigned int rank = Utilities::MPI::this_mpi_process(communicator);
+    directory.write(piece_name("body", level, rank),
+                    [&](std::ostream &out) { data_out.write_vtu(out); });
+
+    if (rank == 0)
+      {
+        directory.write(
+          file_name("body", level) + ".pvtu", [&](std::ostream &out) {
+            data_out.write_pvtu_record(
+              out,
+              piece_names(
+                "body", level, Utilities::MPI::n_mpi_processes(communicator)));
+          });
+        body_files.emplace_back(level, file_name("body", level) + ".pvtu");
+        directory.write("body.pvd", [&](std::ostream &out) {
+          DataOutBase::write_pvd_record(out, body_files);
+        });
+      }
+  }
+
+
+
+  // There are few faces on the contact boundary, and what we know there are
+  // nodal values. We therefore give the corners of each face to deal.II's
+  // output functions directly.
+  template <int dim>
+  void
+  FieldWriter<dim>::write_contact_boundary(
+    const unsigned int                     level,
+    const Mapping<dim>                    &mapping,
+    const DoFHandler<dim>                 &dof_handler,
+    const VectorType                      &displacement,
+    const AffineConstraints<double>       &constraints,
+    const std::vector<ContactRecord<dim>> &contact)
+  {
+    std::map<types::global_dof_index, ContactData<dim>> nodes;
+    for (const ContactRecord<dim> &record : contact)
+      nodes.emplace(record.dof, contact_data(record));
+
+    // A node is a contact node, or hangs between contact nodes, or is neither
+    // because its displacement is prescribed: then it shows no stress.
+    const auto data_at = [&](const types::global_dof_index dof) {
+      const auto node = nodes.find(dof);
+      if (node != nodes.end())
+        return node->second;
+
+      ContactData<dim> data{};
+      if (constraints.is_constrained(dof) &&
+          constraints.get_constraint_entries(dof) != nullptr)
+        for (const auto &[master, weight] :
+             *constraints.get_constraint_entries(dof))
+          {
+            const auto master_node = nodes.find(master);
+            if (master_node != nodes.end())
+              for (unsigned int i = 0; i < data.size(); ++i)
+                data[i] += weight * master_node->second[i];
+          }
+      return data;
+    };
+
+    std::vector<DataOutBase::Patch<dim - 1, dim>> patches;
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        for (const unsigned int f : cell->face_indices())
+          {
+            const auto face = cell->face(f);
+            if (!face->at_boundary() || face->boundary_id() != contact_boundary)
+              continue;
+
+            DataOutBase::Patch<dim - 1, dim> patch;
+            patch.patch_index    = patches.size();
+            patch.n_subdivisions = 1;
+            patch.reference_cell = face->reference_cell();
+            patch.data.reinit(std::tuple_size<ContactData<dim>>::value,
+                              face->n_vertices());
+            const auto cell_vertices = mapping.get_vertices(cell);
+            for (const unsigned int v : face->vertex_indices())
+              {
+                for (const unsigned int w : cell->vertex_indices())
+                  if (cell->vertex_index(w) == face->vertex_index(v))
+                    patch.vertices[v] = cell_vertices[w];
+
+                ContactData<dim> data = data_at(face->vertex_dof_index(v, 0));
+                // The displacement is known everywhere.
+                for (unsigned int c = 0; c < dim; ++c)
+                  data[c] = displacement(face->vertex_dof_index(v, c));
+                for (unsigned int i = 0; i < data.size(); ++i)
+                  patch.data(i, v) = data[i];
+              }
+            patches.push_back(patch);
+          }
+
+    const std::vector<std::string> names  = contact_data_names<dim>();
+    const NonscalarRanges          ranges = contact_data_ranges<dim>();
+    const DataOutBase::VtkFlags    flags  = vtk_flags(level);
+
+    const MPI_Comm communicator = Compatibility::mpi_communicator(dof_handler);
+    const unsigned int rank = Utilities::MPI::this_mpi_process(communicator);
+    directory.write(piece_name("contact", level, rank), [&](std::ostream &out) {
+      DataOutBase::write_vtu(patches, names, ranges, flags, out);
+    });
+
+    if (rank == 0)
+      {
+        directory.write(
+          file_name("contact", level) + ".pvtu", [&](std::ostream &out) {
+            DataOutBase::write_pvtu_record(
+              out,
+              piece_names("contact",
+                          level,
+                          Utilities::MPI::n_mpi_processes(communicator)),
+              names,
+              ranges,
+              flags);
+          });
+        contact_files.emplace_back(level,
+                                   file_name("contact", level) + ".pvtu");
+        directory.write("contact.pvd", [&](std::ostream &out) {
+          DataOutBase::write_pvd_record(out, contact_files);
+        });
+      }
+  }
+
+
+
+  template class FieldWriter<2>;
+  template class FieldWriter<3>;
+} // namespace Friction

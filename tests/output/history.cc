@@ -1,0 +1,98 @@
+// The history of a run: what is written comes back unchanged, with the names
+// and shapes scripts rely on, and each level replaces the file as a whole.
+
+#include <common/output/history.h>
+#include <common/output/run_directory.h>
+
+#include <deal.II/base/hdf5.h>
+#include <deal.II/base/mpi.h>
+
+#include <filesystem>
+#include <iostream>
+
+using namespace Friction;
+
+int
+main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+
+  const RunDirectory directory("history-test/nested/directory");
+  History<2>         history(
+    directory.file("history.h5"), "hertz", "subsection Scene\nend\n", "0.1.0");
+
+  for (unsigned int l = 0; l < 3; ++l)
+    {
+      LevelRecord level;
+      level.level        = l;
+      level.cells        = 40u << (2 * l);
+      level.energy       = -0.25 * (l + 1);
+      level.normal_force = 1. + l;
+
+      std::vector<CycleRecord> cycles(l + 1);
+      for (unsigned int i = 0; i < cycles.size(); ++i)
+        {
+          cycles[i].level     = l;
+          cycles[i].increment = 1. / (1 << i);
+          cycles[i].truncated = i;
+        }
+
+      // No contact on the first level.
+      std::vector<ContactRecord<2>> contact(2 * l);
+      for (unsigned int i = 0; i < contact.size(); ++i)
+        {
+          contact[i].point  = dealii::Point<2>(i, -1.);
+          contact[i].force  = dealii::Tensor<1, 2>({0.5, 2. * i});
+          contact[i].gap    = 0.125 * i;
+          contact[i].state  = i % 3;
+          contact[i].normal = dealii::Tensor<1, 2>({0., -1.});
+        }
+      history.add_level(level, cycles, contact);
+    }
+
+  for (const auto &entry :
+       std::filesystem::directory_iterator(directory.path()))
+    std::cout << entry.path().filename().string() << std::endl;
+
+  const dealii::HDF5::File file(directory.file("history.h5"),
+                                dealii::HDF5::File::FileAccessMode::open);
+  std::cout << file.get_attribute<std::string>("scene") << ' '
+            << file.get_attribute<std::string>("version") << std::endl
+            << file.get_attribute<std::string>("parameters");
+
+  const auto print = [&](const std::string &group, const std::string &name) {
+    auto dataset = file.open_group(group).open_dataset(name);
+    std::cout << group << '/' << name << " [";
+    for (const auto n : dataset.get_dimensions())
+      std::cout << ' ' << n;
+    std::cout << " ]:";
+    for (const double value : dataset.read<std::vector<double>>())
+      std::cout << ' ' << value;
+    std::cout << std::endl;
+  };
+  for (const char *name : {"level",
+                           "cells",
+                           "dofs",
+                           "contact_nodes",
+                           "sticky_nodes",
+                           "outer_iterations",
+                           "cycles",
+                           "contraction",
+                           "energy",
+                           "normal_force",
+                           "tangential_force",
+                           "max_pressure",
+                           "contact_half_width",
+                           "stick_half_width",
+                           "estimated_error",
+                           "certificate",
+                           "setup_seconds",
+                           "solve_seconds"})
+    print("levels", name);
+  for (const char *name :
+       {"level", "increment", "energy", "damping", "truncated", "residual"})
+    print("cycles", name);
+  for (const char *name :
+       {"point", "normal", "gap", "force", "displacement", "measure", "state"})
+    print("contact/level_02", name);
+}
