@@ -1,6 +1,6 @@
 #include <common/scene/parameters.h>
+#include <common/scene/parse_function.h>
 
-#include <deal.II/base/function_parser.h>
 #include <deal.II/base/numbers.h>
 #include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/patterns.h>
@@ -349,8 +349,16 @@ namespace Friction
       std::string text = pattern.description(Patterns::PatternBase::Text);
       if (text.find("1e-300") != text.npos)
         return "a positive number";
-      // "A floating point number v ..." ends up within a sentence.
-      text[0] = std::tolower(text[0]);
+      // The descriptions begin sentences and name limits that nobody meets.
+      text[0]            = std::tolower(text[0]);
+      const auto replace = [&](const std::string &from, const std::string &to) {
+        const auto position = text.find(from);
+        if (position != text.npos)
+          text.replace(position, from.size(), to);
+      };
+      replace("floating point number", "number");
+      replace(" v such that -MAX_DOUBLE <= v <= MAX_DOUBLE", "");
+      replace(" <= 2147483647", "");
       return text;
     }
 
@@ -745,20 +753,10 @@ namespace Friction
   Expressions::evaluate(const std::string &expression,
                         const std::string &where) const
   {
-    double value = 0.;
-    try
-      {
-        FunctionParser<1> function(1);
-        function.initialize(
-          std::string("x_"), expand(expression), named_numbers);
-        value = function.value(Point<1>());
-      }
-    catch (const std::exception &)
-      {
-        throw InputError(where + ": '" + expression +
-                         "' is not a constant expression; check its syntax "
-                         "and the names in it.");
-      }
+    // There is no coordinate to depend on: nobody writes this one.
+    const double value =
+      parse_function<1>({expression}, *this, where, "no_coordinate")
+        ->value(Point<1>());
     if (!std::isfinite(value))
       throw InputError(where + ": '" + expression +
                        "' is not a finite number; correct it.");

@@ -1,6 +1,6 @@
+#include <common/scene/parse_function.h>
 #include <common/scene/scene.h>
 
-#include <deal.II/base/function_parser.h>
 #include <deal.II/base/geometry_info.h>
 #include <deal.II/base/numbers.h>
 #include <deal.II/base/utilities.h>
@@ -136,27 +136,28 @@ namespace Friction
     // around its left, lower and right sides, 51 vertices and 40 cells
     // altogether, symmetric about x = 0. The positions of the interior vertices
     // minimise the sum over all corners of all cells of the sixth power of the
-    // deviation from a square, |J|^2/(2 det J). All angles lie between 67 and
-    // 121 degrees; three cells meeting in each lower corner of the core do not
-    // allow anything far below 120.
+    // deviation from a square, |J|^2/(2 det J), with the tangent in place of
+    // the chord along the arc. However fine the mesh, angles stay between 59
+    // and 121 degrees; three cells meet in each lower corner of the core, which
+    // leaves nothing below 120, and 60 opposite to it, to be hoped for.
     void
     make_half_disc(const double radius, Triangulation<2> &triangulation)
     {
       // The right half, by rows from below.
       const double core[5][3][2] = {
-        {{.000, -.643}, {.165, -.637}, {.291, -.621}},
-        {{.000, -.489}, {.174, -.490}, {.337, -.507}},
-        {{.000, -.332}, {.190, -.337}, {.383, -.358}},
-        {{.000, -.168}, {.203, -.172}, {.416, -.185}},
-        {{.000, .000}, {.208, .000}, {.428, .000}}};
+        {{.000, -.644}, {.164, -.639}, {.290, -.622}},
+        {{.000, -.490}, {.173, -.492}, {.336, -.509}},
+        {{.000, -.333}, {.189, -.338}, {.382, -.359}},
+        {{.000, -.169}, {.202, -.172}, {.416, -.185}},
+        {{.000, .000}, {.207, .000}, {.428, .000}}};
       // Between the rings, anticlockwise from the lowest point.
-      const double between[7][2] = {{.000, -.807},
-                                    {.201, -.787},
-                                    {.371, -.721},
-                                    {.497, -.587},
-                                    {.596, -.413},
-                                    {.660, -.213},
-                                    {.682, .000}};
+      const double between[7][2] = {{.000, -.808},
+                                    {.201, -.789},
+                                    {.370, -.723},
+                                    {.495, -.589},
+                                    {.594, -.415},
+                                    {.659, -.214},
+                                    {.681, .000}};
 
       const auto core_vertex = [](const unsigned int i, const unsigned int j) {
         return 5 * j + i;
@@ -291,30 +292,8 @@ namespace Friction
   Scene<dim>::make_function(const std::vector<std::string> &components,
                             const std::string              &where) const
   {
-    std::vector<std::string> expanded;
-    for (const std::string &component : components)
-      expanded.push_back(parameters.expressions.expand(component));
-
-    auto function = std::make_shared<FunctionParser<dim>>(components.size());
-    try
-      {
-        function->initialize(FunctionParser<dim>::default_variable_names(),
-                             expanded,
-                             parameters.expressions.constants());
-        // Expressions are parsed when they are needed for the first time.
-        Vector<double> values(components.size());
-        function->vector_value(Point<dim>(), values);
-      }
-    catch (const std::exception &)
-      {
-        std::string text;
-        for (const std::string &component : components)
-          text += (text.empty() ? "" : ", ") + Utilities::trim(component);
-        throw InputError(where + ": '" + text +
-                         "' cannot be understood; check its syntax and the "
-                         "names in it.");
-      }
-
+    const std::shared_ptr<const Function<dim>> function =
+      parse_function<dim>(components, parameters.expressions, where);
     if (parameters.scene.rotation_angle == 0.)
       return function;
     return std::make_shared<TurnedFunction<dim>>(function, rotation);
@@ -332,10 +311,10 @@ namespace Friction
       [&](const std::vector<std::string> &components,
           const std::string              &where) {
         if (components.size() != dim)
-          throw InputError(where + " has " +
+          throw InputError(where + " needs " + Utilities::int_to_string(dim) +
+                           " components, but has " +
                            Utilities::int_to_string(components.size()) +
-                           " components, but " + Utilities::int_to_string(dim) +
-                           " are needed; correct it.");
+                           "; correct it.");
       };
 
     // Cosines of right angles shall be exact.

@@ -1,0 +1,200 @@
+// The meshes of a scene: the half disc in numbers, its symmetry, its shape
+// after refinement; distortion and rotation of a rectangle; a mesh from a file.
+
+#include <common/scene/scene.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <deal.II/distributed/tria.h>
+
+#include <deal.II/grid/grid_out.h>
+#include <deal.II/grid/grid_tools.h>
+
+#include <fstream>
+#include <iostream>
+#include <set>
+
+using namespace dealii;
+using namespace Friction;
+
+namespace
+{
+  Parameters
+  parameters(const std::vector<std::string> &overrides)
+  {
+    std::ofstream("scene.prm")
+      << "subsection Boundary conditions\n  set Displacement = 1: 0, 0\nend\n";
+    return read_parameters("scene.prm", overrides);
+  }
+
+
+
+  // Smallest and largest angle, in degrees, of all cells.
+  std::pair<double, double>
+  angles(const Triangulation<2> &triangulation)
+  {
+    std::pair<double, double> range(180., 0.);
+    const unsigned int        around[4] = {0, 1, 3, 2};
+    for (const auto &cell : triangulation.active_cell_iterators())
+      for (unsigned int i = 0; i < 4; ++i)
+        {
+          const Point<2>     p = cell->vertex(around[i]);
+          const Tensor<1, 2> a = cell->vertex(around[(i + 1) % 4]) - p;
+          const Tensor<1, 2> b = cell->vertex(around[(i + 3) % 4]) - p;
+          const double       angle =
+            std::acos(a * b / (a.norm() * b.norm())) * 180. / numbers::PI;
+          range.first  = std::min(range.first, angle);
+          range.second = std::max(range.second, angle);
+        }
+    return range;
+  }
+
+
+
+  void
+  half_disc()
+  {
+    const Scene<2> scene(
+      parameters({"Scene/Geometry=half disc", "Scene/Radius=2"}));
+    parallel::distributed::Triangulation<2> mesh(
+      MPI_COMM_WORLD,
+      Triangulation<2>::limit_level_difference_at_vertices,
+      parallel::distributed::Triangulation<2>::construct_multigrid_hierarchy);
+    scene.make_coarse_mesh(mesh);
+
+    for (unsigned int level = 0; level < 6; ++level)
+      {
+        unsigned int n_arc = 0, n_flat = 0;
+        double       off_arc = 0., off_flat = 0.;
+        for (const auto &cell : mesh.active_cell_iterators())
+          for (const auto &face : cell->face_iterators())
+            if (face->at_boundary())
+              {
+                ++(face->boundary_id() == 0 ? n_arc : n_flat);
+                for (unsigned int v = 0; v < 2; ++v)
+                  if (face->boundary_id() == 0)
+                    off_arc =
+                      std::max(off_arc, std::abs(face->vertex(v).norm() - 2.));
+                  else
+                    off_flat = std::max(off_flat, std::abs(face->vertex(v)[1]));
+              }
+
+        // Vertices in a grid much finer than the mesh, to find mirror images.
+        std::set<std::pair<long, long>> places;
+        const auto place = [](const double x) { return std::lround(x * 1e7); };
+        for (const Point<2> &v : mesh.get_vertices())
+          places.insert({place(v[0]), place(v[1])});
+        unsigned int n_lonely = 0;
+        for (const Point<2> &v : mesh.get_vertices())
+          {
+            bool found = false;
+            for (int i = -1; i <= 1; ++i)
+              for (int j = -1; j <= 1; ++j)
+                found = found ||
+                  places.count({place(-v[0]) + i, place(v[1]) + j}) > 0;
+            if (!found)
+              ++n_lonely;
+          }
+
+        const auto range = angles(mesh);
+        std::cout << mesh.n_active_cells() << " cells "
+                  << mesh.n_used_vertices() << " vertices " << n_arc << " arc "
+                  << n_flat << " flat, off arc " << (off_arc > 1e-14)
+                  << ", off flat " << (off_flat > 1e-14) << ", not mirrored "
+                  << n_lonely << ", angles " << std::lround(range.first) << ' '
+                  << std::lround(range.second) << std::endl;
+        if (level < 5)
+          mesh.refine_global();
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  print(const std::vector<std::string> &overrides)
+  {
+    const Scene<dim>   scene(parameters(overrides));
+    Triangulation<dim> mesh;
+    scene.make_coarse_mesh(mesh);
+    std::cout << mesh.n_active_cells() << " cells, volume "
+              << GridTools::volume(mesh) << ", ids";
+    for (const auto id : mesh.get_boundary_ids())
+      std::cout << ' ' << id;
+    std::cout << std::endl;
+    if (dim == 2)
+      for (const Point<dim> &vertex : mesh.get_vertices())
+        std::cout << "  " << vertex << std::endl;
+  }
+
+
+
+  template <int dim>
+  void
+  check(const std::vector<std::string> &overrides)
+  {
+    try
+      {
+        const Scene<dim>   scene(parameters(overrides));
+        Triangulation<dim> mesh;
+        scene.make_coarse_mesh(mesh);
+        std::cout << "accepted" << std::endl;
+      }
+    catch (const InputError &error)
+      {
+        std::cout << error.what() << std::endl;
+      }
+  }
+} // namespace
+
+int
+main(int argc, char **argv)
+{
+  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  std::cout.precision(4);
+
+  half_disc();
+  print<2>({"Scene/Subdivisions=2, 2", "Scene/Size=3, 1"});
+  print<2>({"Scene/Subdivisions=2, 2", "Scene/Distortion=0.3"});
+  print<2>({"Scene/Rotation angle=90"});
+  print<3>({"Scene/Subdivisions=2, 2, 3",
+            "Scene/Size=1, 2, 3",
+            "Scene/Distortion=0.3",
+            "Boundary conditions/Displacement=5: 0, 0, 0"});
+
+  // A mesh file, and a file that is none.
+  {
+    Triangulation<2> mesh;
+    Scene<2>(parameters({})).make_coarse_mesh(mesh);
+    GridOutFlags::Msh flags(true, true);
+    GridOut           grid_out;
+    grid_out.set_flags(flags);
+    std::ofstream file("square.msh");
+    grid_out.write_msh(mesh, file);
+    std::ofstream("bad.msh") << "$MeshFormat\n7 7 7\nnonsense\n";
+  }
+  print<2>({"Scene/Geometry=mesh file", "Scene/Mesh file=square.msh"});
+  check<2>({"Scene/Geometry=mesh file", "Scene/Mesh file=bad.msh"});
+  check<2>({"Scene/Geometry=mesh file", "Scene/Mesh file=no.msh"});
+
+  check<3>({"Scene/Geometry=half disc",
+            "Boundary conditions/Displacement=1: 0, 0, 0"});
+  check<2>({"Scene/Size=1, 1, 1"});
+  check<2>({"Scene/Subdivisions=4"});
+  check<2>({"Contact/Boundary id=7"});
+  check<2>({"Boundary conditions/Displacement=4: 0, 0"});
+  check<2>({"Boundary conditions/Displacement=top: 0, 0"});
+  check<2>({"Boundary conditions/Displacement=1: 0"});
+  check<2>({"Boundary conditions/Displacement=1: 0, sqrt("});
+  check<2>({"Boundary conditions/Displacement="});
+  check<2>({"Boundary conditions/Displacement=1: 0, free"});
+  check<2>({"Boundary conditions/Displacement=1: 0, free",
+            "Boundary conditions/Pinned points=(1, 0): free, 0"});
+  check<2>({"Boundary conditions/Displacement=1: 0, free",
+            "Boundary conditions/Pinned points=(1, 0): free, 0",
+            "Scene/Rotation angle=10"});
+  check<2>({"Boundary conditions/Pinned points=(0.5, 0): free, 0"});
+  check<2>({"Boundary conditions/Pinned points=0.5: free, 0"});
+  check<2>({"Boundary conditions/Traction=9: 1, 0"});
+  check<2>({"Boundary conditions/Body force=1"});
+}

@@ -1,0 +1,101 @@
+// Gaps and directions towards a plane, discs and rods, and their rotation.
+
+#include <common/scene/obstacle.h>
+#include <common/scene/scene.h>
+
+#include <fstream>
+#include <iostream>
+
+using namespace dealii;
+using namespace Friction;
+
+int
+main()
+{
+  std::cout.precision(5);
+
+  const Tensor<1, 2> down({0., -1.}), up({0., 1.}), right({1., 0.});
+  const Tensor<1, 2> slanted({.6, -.8});
+  {
+    std::cout << "plane" << std::endl;
+    const auto plane = Obstacle<2>::half_space(Point<2>(5, -1), 3. * down);
+    std::cout << plane.gap(Point<2>(0, 0), down) << ' '
+              << plane.gap(Point<2>(0, 0), slanted) << ' '
+              << plane.gap(Point<2>(0, -1.5), down) << ' '
+              << plane.gap(Point<2>(0, 0), right) << ' '
+              << plane.gap(Point<2>(0, 0), up) << ' '
+              << plane.normal(Point<2>(0, 0)) << std::endl;
+  }
+  {
+    // Two discs below the unit disc. Along the radius of the latter the gap has
+    // a closed form.
+    std::cout << "discs" << std::endl;
+    const double   r = .5, R = 1.;
+    const Point<2> c(.75, -1.5 * std::sqrt(.75));
+    const auto     discs =
+      Obstacle<2>::make_rods({c, Point<2>(-c[0], c[1])}, {}, r);
+    for (const double degrees : {-30., -20., -35.})
+      {
+        const double       angle = degrees * numbers::PI / 180.;
+        const Tensor<1, 2> n({std::sin(-angle), -std::cos(angle)});
+        const double       cn = c * n;
+        std::cout << discs.gap(Point<2>(R * n), n) << ' '
+                  << (cn - R) - std::sqrt(r * r - c.norm_square() + cn * cn)
+                  << std::endl;
+      }
+    std::cout << discs.gap(Point<2>(), down) << ' ' // between the two
+              << discs.gap(Point<2>(), up) << ' '   // away from both
+              << discs.gap(Point<2>(c + .3 * up), down) << ' '
+              << discs.gap(Point<2>(c - .3 * up), down) << ' '
+              << discs.gap(Point<2>(c[0] + r, 0.), down) << ' ' // tangential
+              << discs.normal(Point<2>(0.1, 0)) << ' '
+              << discs.normal(Point<2>(-0.1, 0)) << std::endl;
+  }
+  {
+    std::cout << "rods" << std::endl;
+    const Tensor<1, 3> z({0., 0., 2.}), n({0., -1., 0.});
+    const Tensor<1, 3> s({0., -.6, .8});
+    const auto rods = Obstacle<3>::make_rods({Point<3>(0, -2, 7)}, {z}, .5);
+    std::cout << rods.gap(Point<3>(0, 0, 1), n) << ' '
+              << rods.gap(Point<3>(0, 0, 1), s) << ' '
+              << rods.gap(Point<3>(0, -1.6, 1), n) << ' '
+              << rods.normal(Point<3>(2, 0, 1)) << std::endl;
+  }
+  {
+    std::cout << "rotated" << std::endl;
+    std::ofstream("scene.prm") << "subsection Scene\n"
+                                  "  set Rotation angle = 90\n"
+                                  "end\n"
+                                  "subsection Obstacle\n"
+                                  "  set Kind = plane\n"
+                                  "  set Point = 0, -0.25\n"
+                                  "end\n"
+                                  "subsection Boundary conditions\n"
+                                  "  set Displacement = 3: x, 2*y\n"
+                                  "end\n"
+                                  "subsection Contact\n"
+                                  "  set Friction law = Tresca\n"
+                                  "  set Friction bound = x\n"
+                                  "end\n";
+    const Scene<2> scene(read_parameters("scene.prm"));
+    // (1, 2) of the scene as written is (-2, 1) after a quarter turn.
+    const Point<2> p(-2, 1);
+    const auto    &u = *scene.dirichlet_conditions()[0].displacement;
+    std::cout << scene.obstacle().gap(Point<2>(), right) << "; "
+              << scene.obstacle().normal(Point<2>()) << "; " << u.value(p, 0)
+              << ' ' << u.value(p, 1) << "; "
+              << scene.friction_bound()->value(p) << "; " << u.gradient(p, 0)
+              << "; " << u.gradient(p, 1) << std::endl;
+  }
+  {
+    // No friction is no friction, whatever it is called.
+    std::ofstream("scene.prm") << "subsection Boundary conditions\n"
+                                  "  set Displacement = 3: 0, 0\n"
+                                  "end\n";
+    const Scene<2> scene(read_parameters("scene.prm"));
+    std::cout << (scene.friction_law() == FrictionLaw::none) << ' '
+              << (scene.contact_boundary_id() == numbers::invalid_boundary_id)
+              << ' ' << scene.obstacle().empty() << ' '
+              << (scene.body_force() == nullptr) << std::endl;
+  }
+}

@@ -1,0 +1,148 @@
+// Scene files, overrides, and what is said about everything wrong in them.
+
+#include <common/scene/parameters.h>
+
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+using namespace Friction;
+
+namespace
+{
+  // Read a file with the given text; the sentence if that fails.
+  void
+  check(const std::string              &what,
+        const std::string              &text,
+        const std::vector<std::string> &overrides = {})
+  {
+    {
+      std::ofstream file("scene.prm");
+      file << text;
+    }
+    std::cout << what << "\n  ";
+    try
+      {
+        read_parameters("scene.prm", overrides);
+        std::cout << "accepted\n";
+      }
+    catch (const InputError &error)
+      {
+        std::cout << error.what() << "\n";
+      }
+  }
+} // namespace
+
+int
+main()
+{
+  const std::string good = "# a comment\n"
+                           "subsection Scene\n"
+                           "  set Constants = L = 2; M = L^2\n"
+                           "  set Size = L, \\\n"
+                           "             M/2 # goes on\n"
+                           "  set Definitions = r = x/L; s = r + 1e-1*r\n"
+                           "end\n"
+                           "subsection Contact\n"
+                           "  set Friction coefficient = 0.4\n"
+                           "end\n";
+  {
+    std::ofstream("some.scene.prm") << good;
+    const Parameters p = read_parameters("some.scene.prm",
+                                         {"Contact/Friction coefficient=1.5",
+                                          "Material/Poisson ratio = 0.25",
+                                          "Solver/Algorithm=fixed point",
+                                          "Solver/Truncation=contact",
+                                          "Output/Fields=false"});
+    std::cout << p.name << "\nsize " << p.scene.size[0] << ' '
+              << p.scene.size[1] << "\nF " << p.contact.friction_coefficient
+              << "\nnu " << p.material.poisson_ratio() << "\nlambda, mu "
+              << p.material.lambda() << ' ' << p.material.mu()
+              << "\nfixed point "
+              << (p.solver.algorithm == Algorithm::fixed_point) << "\ncontact "
+              << (p.solver.truncation == TruncationVariant::contact)
+              << "\nfields " << p.output.fields << "\nexpanded "
+              << p.expressions.expand("2*s*max(r,x)") << "\nmu + F "
+              << p.expressions.evaluate("mu + F", "here") << std::endl;
+
+    // The text kept with the results is a scene file for the same parameters.
+    std::ofstream("again.prm") << p.text;
+    std::cout << "same text again "
+              << (read_parameters("again.prm").text == p.text) << std::endl;
+
+    // The documented defaults are a scene file as well, and the solver's are
+    // those of its settings.
+    std::ostringstream defaults;
+    print_default_parameters(defaults);
+    std::ofstream("defaults.prm") << defaults.str();
+    const SolverSettings solver = read_parameters("defaults.prm").solver;
+    const SolverSettings settings;
+    std::cout << "same solver "
+              << (solver.algorithm == settings.algorithm &&
+                  solver.coarse_correction == settings.coarse_correction &&
+                  solver.cycle == settings.cycle &&
+                  solver.truncation == settings.truncation &&
+                  solver.smoothing_steps == settings.smoothing_steps &&
+                  solver.coarse_smoothing_steps ==
+                    settings.coarse_smoothing_steps &&
+                  solver.inner_tolerance == settings.inner_tolerance &&
+                  solver.outer_tolerance == settings.outer_tolerance &&
+                  solver.certificate_tolerance ==
+                    settings.certificate_tolerance &&
+                  solver.maximum_cycles == settings.maximum_cycles &&
+                  solver.maximum_outer_iterations ==
+                    settings.maximum_outer_iterations &&
+                  solver.maximum_damping == settings.maximum_damping &&
+                  solver.outer_damping == settings.outer_damping)
+              << std::endl;
+  }
+
+  std::cout << "Eck's bounds " << eck_bound(2, .3) << ' ' << eck_bound(3, .3)
+            << "\n\n";
+
+  std::cout << "no file\n  ";
+  try
+    {
+      read_parameters("nowhere.prm");
+    }
+  catch (const InputError &error)
+    {
+      std::cout << error.what() << "\n";
+    }
+
+  check("good", good);
+  check("unknown entry", "subsection Contact\n  set Frction law = none\nend\n");
+  check("unknown section", "subsection Contakt\nend\n");
+  check("no section", "set Friction law = none\n");
+  check("section in section", "subsection Scene\nsubsection Contact\n");
+  check("section not closed", "\nsubsection Scene\n");
+  check("too many ends", "subsection Scene\nend\nend\n");
+  check("no such statement", "subsection Scene\n  Size = 1, 1\nend\n");
+  check("no choice", "subsection Solver\n  set Cycle = F\nend\n");
+  check("no number", "subsection Material\n  set Poisson ratio = 1/3\nend\n");
+  check("unknown override", good, {"Solver/Cycles=V"});
+  check("override without value", good, {"Solver/Cycle"});
+  check("override without section", good, {"Cycle=V"});
+  check("override without match", good, {"Solver/Smoothing steps=0"});
+  check("negative tolerance", good, {"Solver/Inner tolerance=-1"});
+  check("levels", good, {"Refinement/Levels=1000"});
+  check("E = 0", "\nsubsection Material\n  set Young's modulus = 0\nend\n");
+  check("nu = 0.5", good, {"Material/Poisson ratio=0.5"});
+  check("nu = -1", good, {"Material/Poisson ratio=-1"});
+  check("F < 0", good, {"Contact/Friction coefficient=-0.1"});
+  check("size", good, {"Scene/Size=1, -1"});
+  check("size", good, {"Scene/Size=1, 1/0"});
+  check("size", good, {"Scene/Size=1, q"});
+  check("radius", good, {"Scene/Radius=0"});
+  check("subdivisions", good, {"Scene/Subdivisions=1, 1.5"});
+  check("distortion", good, {"Scene/Distortion=0.9"});
+  check("no mesh file", good, {"Scene/Geometry=mesh file"});
+  check("constant", good, {"Scene/Constants=1"});
+  check("constant", good, {"Scene/Constants=x=1"});
+  check("constant", good, {"Scene/Constants=F=1"});
+  check("no rods", good, {"Obstacle/Kind=rods"});
+  check("no normal", good, {"Obstacle/Normal=0, 0"});
+  check("no obstacle", good, {"Contact/Contact normal=obstacle"});
+  check("conditions", good, {"Boundary conditions/Displacement=0, 0"});
+  check("directory", good, {"Output/Directory="});
+}
