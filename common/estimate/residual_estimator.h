@@ -121,7 +121,8 @@ namespace Friction
    * $1/(\lambda+2\mu)$ the bound from above holds uniformly in $\lambda$, since
    * $2\mu\|\varepsilon(v)\|^2\le a(v,v)$; the price is overestimation as
    * $\nu\to\frac12$. The estimate is a bound up to a constant that depends on
-   * the shape of the cells only.
+   * the shape of the cells only; on uniform meshes of squares and cubes the
+   * ratio to the true error is about 7 and 9 (see the tests).
    *
    * A hanging face is integrated over its smaller parts and shared by
    * the cells on both sides, like every other interior face.

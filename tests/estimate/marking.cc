@@ -1,0 +1,83 @@
+// Both marking strategies against what sorting the errors gives.
+
+#include <common/estimate/marking.h>
+
+#include <deal.II/distributed/tria.h>
+
+#include <deal.II/grid/grid_generator.h>
+
+#include <algorithm>
+#include <iostream>
+#include <vector>
+
+using namespace dealii;
+
+int
+main(int argc, char **argv)
+{
+  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+
+  parallel::distributed::Triangulation<2> triangulation(MPI_COMM_WORLD);
+  GridGenerator::hyper_cube(triangulation);
+  triangulation.refine_global(3);
+
+  // Errors over nine orders of magnitude; each occurs twice, up to rounding.
+  Vector<float> errors(triangulation.n_active_cells());
+  for (unsigned int i = 0; i < errors.size(); ++i)
+    errors(i) =
+      std::pow(2., -static_cast<int>((i * 7) % 64) / 2) * (1. + 2e-7 * (i % 2));
+
+  const auto smallest_marked = [&]() {
+    double smallest = 1e300;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->refine_flag_set())
+        smallest =
+          std::min<double>(smallest, errors(cell->active_cell_index()));
+    for (const auto &cell : triangulation.active_cell_iterators())
+      cell->clear_refine_flag();
+    return smallest;
+  };
+
+  std::cout << "maximum strategy" << std::endl;
+  for (const double theta : {1., 0.6, 0.5, 0.1, 1e-9})
+    {
+      const unsigned int n =
+        Friction::mark_by_maximum(triangulation, errors, theta);
+      const double smallest = smallest_marked();
+      std::cout << theta << ": " << n << " cells, down to " << smallest
+                << std::endl;
+    }
+
+  std::cout << "bulk" << std::endl;
+  for (const double theta : {1e-3, 0.5, 0.501, 0.75, 0.76, 0.999, 1.})
+    {
+      // Pairs, largest first, until the sum is reached.
+      std::vector<double> squares;
+      double              total = 0.;
+      for (const float error : errors)
+        {
+          squares.push_back(static_cast<double>(error) * error);
+          total += squares.back();
+        }
+      std::sort(squares.rbegin(), squares.rend());
+      double       sum      = 0.;
+      unsigned int expected = 0;
+      while (sum < (1. - 1e-6) * theta * total && expected < squares.size())
+        {
+          sum += squares[expected] + squares[expected + 1];
+          expected += 2;
+        }
+
+      const unsigned int n = Friction::mark_bulk(triangulation, errors, theta);
+      const double       smallest = smallest_marked();
+      std::cout << theta << ": " << n << " cells, down to " << smallest;
+      if (theta < 1.)
+        std::cout << ", expected " << expected;
+      std::cout << std::endl;
+    }
+
+  errors = 0.;
+  std::cout << "no error: "
+            << Friction::mark_by_maximum(triangulation, errors, 0.5) << ' '
+            << Friction::mark_bulk(triangulation, errors, 0.5) << std::endl;
+}

@@ -1,0 +1,131 @@
+// The fields of two levels, in 2D and in 3D with a hanging node on the contact
+// boundary: all files are there, they name each other, and the numbers of
+// points and cells are right.
+
+#include <common/output/fields.h>
+
+#include <deal.II/distributed/tria.h>
+
+#include <deal.II/dofs/dof_tools.h>
+
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_system.h>
+#include <deal.II/fe/mapping_q1.h>
+
+#include <deal.II/grid/grid_generator.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <set>
+
+using namespace dealii;
+using namespace Friction;
+
+namespace
+{
+  void
+  print_lines_with(const std::string &file, const std::set<std::string> &words)
+  {
+    std::ifstream in(file);
+    for (std::string line; std::getline(in, line);)
+      for (const std::string &word : words)
+        if (line.find(word) != std::string::npos)
+          {
+            std::cout << "    " << line << std::endl;
+            break;
+          }
+  }
+
+
+
+  template <int dim>
+  void
+  test()
+  {
+    const std::string name = "fields-test-" + std::to_string(dim);
+    std::filesystem::remove_all(name);
+    const RunDirectory directory(name);
+    FieldWriter<dim>   writer(directory, 1., 1., 2);
+
+    parallel::distributed::Triangulation<dim> triangulation(MPI_COMM_WORLD);
+    GridGenerator::hyper_cube(triangulation, 0., 1., true);
+    triangulation.refine_global(1);
+
+    for (unsigned int level = 0; level < 2; ++level)
+      {
+        if (level == 1)
+          {
+            triangulation.begin_active()->set_refine_flag();
+            triangulation.execute_coarsening_and_refinement();
+          }
+
+        const FESystem<dim> fe(FE_Q<dim>(1), dim);
+        DoFHandler<dim>     dof_handler(triangulation);
+        dof_handler.distribute_dofs(fe);
+        AffineConstraints<double> constraints;
+        DoFTools::make_hanging_node_constraints(dof_handler, constraints);
+        constraints.close();
+
+        LinearAlgebra::distributed::Vector<double> u(
+          dof_handler.locally_owned_dofs(),
+          DoFTools::extract_locally_relevant_dofs(dof_handler),
+          MPI_COMM_WORLD);
+        u = 0.25;
+        u.update_ghost_values();
+
+        std::map<types::global_dof_index, ContactRecord<dim>> nodes;
+        for (const auto &cell : dof_handler.active_cell_iterators())
+          for (const auto &face : cell->face_iterators())
+            if (face->at_boundary() && face->boundary_id() == 2)
+              for (const unsigned int v : face->vertex_indices())
+                {
+                  const auto dof = face->vertex_dof_index(v, 0);
+                  if (constraints.is_constrained(dof))
+                    continue;
+                  ContactRecord<dim> record;
+                  record.dof       = dof;
+                  record.point     = face->vertex(v);
+                  record.normal[1] = -1.;
+                  record.measure   = 0.5;
+                  record.force[0]  = 0.25;
+                  record.force[1]  = 1.;
+                  record.gap       = 0.125;
+                  record.state     = 2;
+                  nodes[dof]       = record;
+                }
+        std::vector<ContactRecord<dim>> contact;
+        for (const auto &node : nodes)
+          contact.push_back(node.second);
+
+        const Vector<float> errors(triangulation.n_active_cells());
+        writer.write_level(level,
+                           MappingQ1<dim>(),
+                           dof_handler,
+                           u,
+                           constraints,
+                           contact,
+                           &errors);
+      }
+
+    std::set<std::string> names;
+    for (const auto &entry : std::filesystem::directory_iterator(name))
+      names.insert(entry.path().filename().string());
+    for (const std::string &file : names)
+      {
+        std::cout << "  " << file << std::endl;
+        print_lines_with(directory.file(file), {"<Piece", "<DataSet "});
+      }
+  }
+} // namespace
+
+int
+main(int argc, char **argv)
+{
+  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  std::cout << "2D" << std::endl;
+  test<2>();
+  std::cout << "3D" << std::endl;
+  test<3>();
+}
