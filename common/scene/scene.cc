@@ -513,20 +513,25 @@ namespace Friction
               throw InputError(here + "cannot open the mesh file '" +
                                parameters.scene.mesh_file +
                                "'; correct 'Scene/Mesh file'.");
+            // A mesh of triangles may be read without complaint.
+            bool is_good = true;
             try
               {
                 GridIn<dim> reader;
                 reader.attach_triangulation(mesh);
                 reader.read_msh(file);
+                is_good = mesh.all_reference_cells_are_hyper_cube();
               }
             catch (const std::exception &)
               {
-                throw InputError(here + "the mesh file '" +
-                                 parameters.scene.mesh_file + "' is not a " +
-                                 Utilities::int_to_string(dim) + "D mesh of " +
-                                 (dim == 2 ? "quadrilaterals" : "hexahedra") +
-                                 " in Gmsh's .msh format; export it as such.");
+                is_good = false;
               }
+            if (!is_good)
+              throw InputError(here + "the mesh file '" +
+                               parameters.scene.mesh_file + "' is not a " +
+                               Utilities::int_to_string(dim) + "D mesh of " +
+                               (dim == 2 ? "quadrilaterals" : "hexahedra") +
+                               " in Gmsh's .msh format; export it as such.");
             break;
           }
       }

@@ -171,9 +171,14 @@ main(int argc, char **argv)
     grid_out.set_flags(flags);
     std::ofstream file("square.msh");
     grid_out.write_msh(mesh, file);
-    std::ofstream("bad.msh") << "$MeshFormat\n7 7 7\nnonsense\n";
+    std::ofstream("bad.msh") << "nonsense\n";
   }
+  std::ofstream("triangle.msh")
+    << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
+       "$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n"
+       "$Elements\n1\n1 2 2 0 0 1 2 3\n$EndElements\n";
   print<2>({"Scene/Geometry=mesh file", "Scene/Mesh file=square.msh"});
+  check<2>({"Scene/Geometry=mesh file", "Scene/Mesh file=triangle.msh"});
   check<2>({"Scene/Geometry=mesh file", "Scene/Mesh file=bad.msh"});
   check<2>({"Scene/Geometry=mesh file", "Scene/Mesh file=no.msh"});
 
