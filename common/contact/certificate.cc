@@ -103,13 +103,14 @@ namespace Friction
         raise(result.tension, -pressing);
         raise(result.complementarity, std::min(pressing, room));
 
-        // The force on the body at the node, R = A u - f, is minus the residual.
-        const double tau = coulomb ? std::max(0., pressing) :
-                                     state.normal_force(p) / force_scale;
-        const double bound     = friction_coefficient * tau;
-        const auto   r_T       = tangential_components<dim>(node, residual);
-        const auto   u_T       = tangential_components<dim>(node, u);
-        double       norm      = 0, slip_norm = 0;
+        // The force on the body at the node, R = A u - f, is minus the
+        // residual.
+        const double tau   = coulomb ? std::max(0., pressing)
+                                     : state.normal_force(p) / force_scale;
+        const double bound = friction_coefficient * tau;
+        const auto   r_T   = tangential_components<dim>(node, residual);
+        const auto   u_T   = tangential_components<dim>(node, u);
+        double       norm = 0, slip_norm = 0;
         for (unsigned int t = 0; t < node.n_free_tangents; ++t)
           {
             norm += r_T[t] * r_T[t];
@@ -135,20 +136,18 @@ namespace Friction
 
 
 
-  template Certificate
-  make_certificate(const VectorType &,
-                   const VectorType &,
-                   const NodalConstraints<2> &,
-                   const ContactBoundary<2> &,
-                   const ContactState &,
-                   const double,
-                   const bool);
-  template Certificate
-  make_certificate(const VectorType &,
-                   const VectorType &,
-                   const NodalConstraints<3> &,
-                   const ContactBoundary<3> &,
-                   const ContactState &,
-                   const double,
-                   const bool);
+  template Certificate make_certificate(const VectorType &,
+                                        const VectorType &,
+                                        const NodalConstraints<2> &,
+                                        const ContactBoundary<2> &,
+                                        const ContactState &,
+                                        const double,
+                                        const bool);
+  template Certificate make_certificate(const VectorType &,
+                                        const VectorType &,
+                                        const NodalConstraints<3> &,
+                                        const ContactBoundary<3> &,
+                                        const ContactState &,
+                                        const double,
+                                        const bool);
 } // namespace Friction

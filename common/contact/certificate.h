@@ -27,31 +27,28 @@ namespace Friction
     double slip            = 0; ///< $|R_T+F\tau u_T/|u_T||$, where it slides
 
     /** The largest of all. */
-    double
-    largest() const;
+    double largest() const;
 
     /** The name of the largest and all values, for a message. */
-    std::string
-    describe() const;
+    std::string describe() const;
   };
 
   /**
-   * Evaluates the certificate from scratch: of the state, only the normal forces
-   * given for Tresca friction are used.
+   * Evaluates the certificate from scratch: of the state, only the normal
+   * forces given for Tresca friction are used.
    *
    * @param residual  f - A u, at all nodes.
    * @param coulomb   the bound is F times the normal force of @p u itself;
    *                  otherwise F times that of the state.
    */
   template <int dim>
-  Certificate
-  make_certificate(const VectorType            &u,
-                   const VectorType            &residual,
-                   const NodalConstraints<dim> &constraints,
-                   const ContactBoundary<dim>  &contact,
-                   const ContactState          &state,
-                   const double                 friction_coefficient,
-                   const bool                   coulomb);
+  Certificate make_certificate(const VectorType            &u,
+                               const VectorType            &residual,
+                               const NodalConstraints<dim> &constraints,
+                               const ContactBoundary<dim>  &contact,
+                               const ContactState          &state,
+                               const double friction_coefficient,
+                               const bool   coulomb);
 } // namespace Friction
 
 #endif

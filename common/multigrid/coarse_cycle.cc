@@ -41,8 +41,6 @@ namespace Friction
     , matrices(leaf_matrix, hierarchy, constraints)
     , truncation(constraints)
   {
-    if (!has_levels())
-      return;
     coarsest = std::make_unique<CoarsestSolver<dim>>(dof_handler, matrices);
     const unsigned int n = matrices.n_levels();
     rhs.resize(n);
@@ -102,16 +100,29 @@ namespace Friction
   {
     leaf_residual = &r;
     v             = 0.;
-    if (!has_levels())
-      return;
     for (auto &c : correction)
       c = 0.;
 
+    const unsigned int finest = hierarchy.n_levels() - 1;
+    if (finest == 0)
+      {
+        // The coarsest mesh is the leaf mesh: no cycle, but a direct solve.
+        restrict_residual(0, finest_residual);
+        if (bounded)
+          restrict_bounds(0);
+        solve_coarsest();
+        for (const unsigned int node : hierarchy.level(0).own_nodes())
+          for (unsigned int d = 0; d < dim; ++d)
+            v.local_element(dim * hierarchy.level(0).leaf_node(node) + d) =
+              correction[0].local_element(dim * node + d);
+        truncation.apply(v.begin());
+        return;
+      }
+
     // The finest level has no unknowns of its own: its leaf nodes' residuals
     // are restricted as they are.
-    const unsigned int finest = hierarchy.n_levels() - 1;
-    const auto        &level  = hierarchy.level(finest);
-    const unsigned int below  = finest - 1;
+    const auto        &level = hierarchy.level(finest);
+    const unsigned int below = finest - 1;
     if (finest_residual.size() == 0)
       finest_residual.reinit(dim * level.n_nodes());
     for (const unsigned int node : level.own_nodes())
@@ -356,7 +367,8 @@ namespace Friction
   CoarseCycle<dim>::restrict_bounds(const unsigned int k)
   {
     const auto &level       = hierarchy.level(k);
-    const auto &finer       = hierarchy.level(k + 1);
+    const bool  has_finer   = (k + 1 < hierarchy.n_levels());
+    const auto &finer       = hierarchy.level(has_finer ? k + 1 : k);
     const bool  finer_last  = (k + 2 == hierarchy.n_levels());
     const auto  finer_bound = [&](const bool         is_upper,
                                  const unsigned int node,

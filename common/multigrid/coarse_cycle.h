@@ -45,13 +45,6 @@ namespace Friction
                 const Cycle                  cycle,
                 const unsigned int           smoothing_steps);
 
-    /** There is a coarser level at all. */
-    bool
-    has_levels() const
-    {
-      return hierarchy.n_levels() > 1;
-    }
-
     /** Follows a change of phases. Returns the number of block rows computed.
      */
     std::size_t update(const Truncation<dim> &truncation);

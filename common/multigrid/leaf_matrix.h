@@ -10,11 +10,11 @@ namespace Friction
 {
   /**
    * Copies an assembled matrix into node blocks. Trilinos is good at gathering
-   * contributions from all processes, node blocks are good at being relaxed; the
-   * former is no longer needed after this.
+   * contributions from all processes, node blocks are good at being relaxed;
+   * the former is no longer needed after this.
    *
-   * Rows and columns of hanging nodes, which are condensed and hold but a number
-   * on the diagonal, are left empty.
+   * Rows and columns of hanging nodes, which are condensed and hold but a
+   * number on the diagonal, are left empty.
    */
   template <int dim>
   NodeBlockMatrix<dim>

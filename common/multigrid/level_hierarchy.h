@@ -39,13 +39,13 @@ namespace Friction
     const Entry *
     begin(const unsigned int row) const
     {
-      return entries.data() + starts[row];
+      return row < n_rows() ? entries.data() + starts[row] : nullptr;
     }
 
     const Entry *
     end(const unsigned int row) const
     {
-      return entries.data() + starts[row + 1];
+      return row < n_rows() ? entries.data() + starts[row + 1] : nullptr;
     }
 
     std::size_t

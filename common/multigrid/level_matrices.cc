@@ -12,7 +12,7 @@ namespace Friction
     , hierarchy(hierarchy)
     , constraints(constraints)
     , truncation(constraints)
-    , matrices(hierarchy.n_levels() - 1)
+    , matrices(std::max(1u, hierarchy.n_levels() - 1))
     , inverses(matrices.size())
     , untruncated_traces(matrices.size())
     , position_of_column(matrices.size())
@@ -64,6 +64,9 @@ namespace Friction
             own_block(level.node_of_leaf(j), i, j, e);
         }
 
+    // A mesh of one level only has nothing finer.
+    if (k + 1 == hierarchy.n_levels())
+      return;
     const auto &finer      = hierarchy.level(k + 1);
     const bool  finer_last = (k + 2 == hierarchy.n_levels());
     for (auto child = level.children().begin(row);
@@ -108,11 +111,22 @@ namespace Friction
 
 
   template <int dim>
+  const NodeWeights &
+  LevelMatrices<dim>::finer_parents(const unsigned int k) const
+  {
+    static const NodeWeights none;
+    return k + 1 < hierarchy.n_levels() ? hierarchy.level(k + 1).parents()
+                                        : none;
+  }
+
+
+
+  template <int dim>
   void
   LevelMatrices<dim>::make_pattern(const unsigned int k)
   {
     const unsigned int         n_nodes = hierarchy.level(k).n_nodes();
-    const NodeWeights         &parents = hierarchy.level(k + 1).parents();
+    const NodeWeights         &parents = finer_parents(k);
     std::vector<std::size_t>   starts  = {0};
     std::vector<unsigned int>  columns, row_columns;
     std::vector<unsigned int> &seen = position_of_column[k];
@@ -159,7 +173,7 @@ namespace Friction
   {
     NodeBlockMatrix<dim>      &B        = matrices[k];
     std::vector<unsigned int> &position = position_of_column[k];
-    const NodeWeights         &parents  = hierarchy.level(k + 1).parents();
+    const NodeWeights         &parents  = finer_parents(k);
     const std::size_t          begin = B.row_begin(row), end = B.row_end(row);
     for (std::size_t e = begin; e < end; ++e)
       {

@@ -28,7 +28,8 @@ namespace Friction
    * them are computed anew, by the same code and hence to the same values as a
    * fresh assembly: O(contact nodes) work, as in section 4.5 of the thesis.
    *
-   * Level matrices exist for the correction levels 0,...,n_levels-2.
+   * Level matrices exist for the correction levels 0,...,n_levels-2; if there
+   * is but one level, for that one, which is then the leaf mesh itself.
    */
   template <int dim>
   class LevelMatrices
@@ -101,6 +102,8 @@ namespace Friction
     void compute_row(const unsigned int level, const unsigned int row);
 
     void compute_inverse(const unsigned int level, const unsigned int row);
+
+    const NodeWeights &finer_parents(const unsigned int level) const;
 
     // Calls f(column, w, block) for all contributions w*block to a row, block
     // being given untruncated as (leaf i, leaf j) or as is.

@@ -304,6 +304,12 @@ namespace Friction
          positive,
          "Largest step length of the line search."},
         {"Solver",
+         "Recombined steps",
+         "1",
+         steps,
+         "Number of previous steps that a truncated coarse correction is "
+         "recombined with; 0 for none."},
+        {"Solver",
          "Outer damping",
          "1",
          make(Patterns::Double(1e-3, 1.)),
@@ -315,6 +321,12 @@ namespace Friction
          text,
          "Where results go; it is created."},
         {"Output", "Fields", "true", flag, "Whether to write fields."},
+        {"Output",
+         "Times",
+         "true",
+         flag,
+         "Whether the console shows what depends on the clock: seconds and "
+         "progress."},
         {"Output",
          "Verbosity",
          "cycles",
@@ -961,8 +973,9 @@ namespace Friction
       solver.maximum_cycles = values.integer("Solver/Maximum cycles");
       solver.maximum_outer_iterations =
         values.integer("Solver/Maximum outer iterations");
-      solver.maximum_damping = values.number("Solver/Maximum damping");
-      solver.outer_damping   = values.number("Solver/Outer damping");
+      solver.maximum_damping  = values.number("Solver/Maximum damping");
+      solver.recombined_steps = values.integer("Solver/Recombined steps");
+      solver.outer_damping    = values.number("Solver/Outer damping");
     }
 
     {
@@ -970,6 +983,7 @@ namespace Friction
       auto             &output    = parameters.output;
       output.directory            = values.get("Output/Directory");
       output.fields               = values.flag("Output/Fields");
+      output.times                = values.flag("Output/Times");
       output.verbosity            = (verbosity == "quiet" ? Verbosity::quiet
                                        : verbosity == "levels" ? Verbosity::levels
                                                                : Verbosity::cycles);

@@ -160,6 +160,7 @@ namespace Friction
     {
       std::string directory;
       bool        fields    = true;
+      bool        times     = true; ///< print what depends on the clock
       Verbosity   verbosity = Verbosity::cycles;
     };
 

@@ -116,7 +116,13 @@ namespace Friction
         {
           const Stopwatch sweeps(costs.leading_sweeps);
           for (unsigned int step = 0; step < settings.smoothing_steps; ++step)
-            smoother.sweep(u, problem.forces, state, update, false);
+            // The very first sweep works with the normal forces of the initial
+            // guess, which know better than its residual does.
+            smoother.sweep(u,
+                           problem.forces,
+                           state,
+                           update && (cycle > 0 || step > 0),
+                           false);
           problem.matrix.residual(
             residual.begin(), problem.forces.begin(), u.begin());
           costs.n_leading_sweeps += settings.smoothing_steps + 1;
@@ -156,8 +162,7 @@ namespace Friction
 
         CycleInfo info = {};
         info.energy    = functional.energy(u, residual, state);
-        if (coarse.has_levels())
-          info.damping = correct(u, residual, state, recombination, info);
+        info.damping   = correct(u, residual, state, recombination, info);
         result.cycles.push_back(info);
 
         const Stopwatch sweeps(costs.leading_sweeps);

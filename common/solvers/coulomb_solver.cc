@@ -1,0 +1,134 @@
+#include <common/solvers/coulomb_solver.h>
+
+#include <cmath>
+
+namespace Friction
+{
+  double
+  SolverReport::rho_tau_as_printed() const
+  {
+    double logarithm = 0;
+    for (const double change : outer_changes)
+      logarithm += std::log(std::max(change, 1e-300));
+    return outer_changes.empty() ? 0.
+                                 : std::exp(logarithm / outer_changes.size());
+  }
+
+
+
+  double
+  SolverReport::rho_tau_contraction() const
+  {
+    if (outer_changes.size() < 2 || outer_changes.front() == 0)
+      return 0.;
+    return std::pow(outer_changes.back() / outer_changes.front(),
+                    1. / (outer_changes.size() - 1));
+  }
+
+
+
+  template <int dim>
+  CoulombSolver<dim>::CoulombSolver(const DoFHandler<dim>      &dof_handler,
+                                    const LevelHierarchy<dim>  &hierarchy,
+                                    const DiscreteProblem<dim> &problem,
+                                    const SolverSettings       &settings)
+    : problem(problem)
+    , settings(settings)
+    , iteration(dof_handler, hierarchy, problem, settings)
+  {}
+
+
+
+  template <int dim>
+  SolverReport
+  CoulombSolver<dim>::solve(VectorType     &u,
+                            ContactState   &state,
+                            const Progress &progress)
+  {
+    SolverReport report;
+    const bool   coulomb =
+      problem.has_friction() && problem.friction_law == FrictionLaw::coulomb;
+
+    if (coulomb && settings.algorithm == Algorithm::fixed_point)
+      iterate_normal_forces(report, u, state, progress);
+    else
+      {
+        const MultigridResult result =
+          iteration.solve(u, state, coulomb, progress);
+        report.converged        = result.converged;
+        report.outer_iterations = 1;
+        report.cycles           = result.cycles;
+        report.contraction      = result.contraction();
+      }
+
+    report.residual.reinit(u);
+    problem.matrix.residual(
+      report.residual.begin(), problem.forces.begin(), u.begin());
+    report.energy =
+      TrescaFunctional<dim>(problem).energy(u, report.residual, state);
+    report.certificate = make_certificate<dim>(u,
+                                               report.residual,
+                                               problem.constraints,
+                                               problem.contact,
+                                               state,
+                                               problem.effective_coefficient(),
+                                               coulomb);
+    if (!(report.certificate.largest() <= settings.certificate_tolerance))
+      report.converged = false;
+    return report;
+  }
+
+
+
+  // Algorithm 2. The normal forces are those of nodes in contact, and zero
+  // elsewhere: rounding errors left at open nodes would count as friction
+  // there, make the nodes stick, and truncate them.
+  template <int dim>
+  void
+  CoulombSolver<dim>::iterate_normal_forces(SolverReport   &report,
+                                            VectorType     &u,
+                                            ContactState   &state,
+                                            const Progress &progress)
+  {
+    std::vector<double> given(state.size());
+    while (report.outer_iterations < settings.maximum_outer_iterations)
+      {
+        for (unsigned int p = 0; p < state.size(); ++p)
+          given[p] = state.normal_force(p);
+
+        const MultigridResult result =
+          iteration.solve(u, state, false, progress);
+        report.cycles.insert(
+          report.cycles.end(), result.cycles.begin(), result.cycles.end());
+        if (report.outer_iterations++ == 0)
+          report.contraction = result.contraction();
+        if (!result.converged)
+          return;
+
+        iteration.update_normal_forces(state, u);
+        double change = 0, norm = 0;
+        for (unsigned int p = 0; p < state.size(); ++p)
+          {
+            const double found = state.normal_force(p);
+            change += (found - given[p]) * (found - given[p]);
+            norm += found * found;
+          }
+        report.outer_changes.push_back(norm > 0 ? std::sqrt(change / norm)
+                                                : std::sqrt(change));
+        if (report.outer_changes.back() <= settings.outer_tolerance)
+          {
+            report.converged = true;
+            return;
+          }
+        for (unsigned int p = 0; p < state.size(); ++p)
+          state.set_normal_force(p,
+                                 given[p] +
+                                   settings.outer_damping *
+                                     (state.normal_force(p) - given[p]));
+      }
+  }
+
+
+
+  template class CoulombSolver<2>;
+} // namespace Friction

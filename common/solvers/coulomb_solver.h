@@ -1,0 +1,100 @@
+#ifndef friction_solvers_coulomb_solver_h
+#define friction_solvers_coulomb_solver_h
+
+#include <common/contact/certificate.h>
+#include <common/solvers/monotone_multigrid.h>
+
+#include <vector>
+
+namespace Friction
+{
+  /** How the solution of a contact problem with friction went. */
+  struct SolverReport
+  {
+    bool converged = false;
+
+    /// Multigrid solutions with given normal forces: those of Algorithm 2, one
+    /// otherwise.
+    unsigned int outer_iterations = 0;
+
+    /// All multigrid cycles, of all outer iterations.
+    std::vector<CycleInfo> cycles;
+
+    /// Mean contraction of the increments per cycle (Algorithm 2: in the first
+    /// outer iteration).
+    double contraction = 0;
+
+    /// Algorithm 2: the relative change of the normal forces in each outer
+    /// iteration.
+    std::vector<double> outer_changes;
+
+    /// $\rho_\tau$ as printed in the thesis: the geometric mean of the relative
+    /// changes. Zero if there are none.
+    double rho_tau_as_printed() const;
+
+    /// The mean contraction of the relative changes per outer iteration, which
+    /// is what the tabulated numbers fit. Zero if there are fewer than two.
+    double rho_tau_contraction() const;
+
+    Certificate certificate;
+
+    /// The energy of the solution, and its residual f - A u at all nodes.
+    double     energy = 0;
+    VectorType residual;
+  };
+
+
+
+  /**
+   * Solves the discrete contact problem with the law of friction it has.
+   *
+   * Without friction, and with given friction bounds (Tresca), the monotone
+   * multigrid iteration does it. Coulomb's law ties the bounds to the normal
+   * forces of the solution itself:
+   * <ul>
+   * <li> Algorithm 2 iterates (6.11): solve with given normal forces, take
+   * those of the solution, and so on until they no longer change. <li>
+   * Algorithm 3 lets the leading relaxation use the normal forces of the
+   *      intermediate iterate, and needs no outer iteration.
+   * </ul>
+   */
+  template <int dim>
+  class CoulombSolver
+  {
+  public:
+    using Progress = typename MonotoneMultigrid<dim>::Progress;
+
+    /** As for MonotoneMultigrid. */
+    CoulombSolver(const DoFHandler<dim>      &dof_handler,
+                  const LevelHierarchy<dim>  &hierarchy,
+                  const DiscreteProblem<dim> &problem,
+                  const SolverSettings       &settings);
+
+    /**
+     * Solves, and certifies the solution.
+     * @param u      admissible initial guess, and solution.
+     * @param state  the same; with the law of Tresca its normal forces are the
+     *               given ones.
+     */
+    SolverReport
+    solve(VectorType &u, ContactState &state, const Progress &progress = {});
+
+    const MonotoneMultigrid<dim> &
+    multigrid() const
+    {
+      return iteration;
+    }
+
+  private:
+    const DiscreteProblem<dim> problem;
+    const SolverSettings       settings;
+    MonotoneMultigrid<dim>     iteration;
+
+    void iterate_normal_forces(SolverReport   &report,
+                               VectorType     &u,
+                               ContactState   &state,
+                               const Progress &progress);
+  };
+} // namespace Friction
+
+#endif

@@ -1,0 +1,40 @@
+#ifndef friction_solvers_initial_guess_h
+#define friction_solvers_initial_guess_h
+
+#include <common/contact/contact_boundary.h>
+#include <common/contact/contact_state.h>
+
+namespace Friction
+{
+  /**
+   * Nodal contact forces turned into a field of stresses on the contact
+   * boundary, for interpolation to another mesh, for the error estimator and
+   * for output: force on the body over nodal measure at the nodes that are in
+   * contact, zero at all other nodes.
+   *
+   * @param residual  f - A u.
+   */
+  template <int dim>
+  VectorType contact_tractions(const VectorType            &residual,
+                               const NodalConstraints<dim> &constraints,
+                               const ContactBoundary<dim>  &contact,
+                               const ContactState          &state);
+
+  /**
+   * Makes an initial guess out of a displacement and tractions interpolated
+   * from a coarser mesh (or of zeros): imposes prescribed values, moves nodes
+   * out of the obstacle, and turns normal tractions back into nodal normal
+   * forces.
+   *
+   * Stresses, not forces, are what can be interpolated: forces shrink with the
+   * size of the cells.
+   */
+  template <int dim>
+  ContactState make_initial_guess(VectorType                  &u,
+                                  const VectorType            &tractions,
+                                  const NodalConstraints<dim> &constraints,
+                                  const ContactBoundary<dim>  &contact,
+                                  const bool                   with_friction);
+} // namespace Friction
+
+#endif

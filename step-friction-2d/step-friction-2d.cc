@@ -1,0 +1,810 @@
+// @sect3{Include files}
+
+// The first block is what any parallel adaptive program of the tutorial needs,
+// step-40 for example; the only newcomer is the header of the Trilinos matrix
+// that the stiffness matrix is gathered in.
+#include <deal.II/base/function.h>
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/base/timer.h>
+
+#include <deal.II/distributed/solution_transfer.h>
+#include <deal.II/distributed/tria.h>
+
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/dofs/dof_tools.h>
+
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_system.h>
+#include <deal.II/fe/fe_values.h>
+#include <deal.II/fe/mapping_q.h>
+
+#include <deal.II/lac/affine_constraints.h>
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include <deal.II/numerics/vector_tools.h>
+
+// The second block is the library that comes with this program. Each header is
+// named after the one subject it has: what is modelled (<code>scene</code>),
+// the contact boundary (<code>contact</code>), the levels and what is done on
+// them (<code>multigrid</code>), the nonlinear iterations
+// (<code>solvers</code>), where to refine (<code>estimate</code>), and what is
+// written (<code>output</code>).
+#include <common/compatibility.h>
+#include <common/contact/contact_boundary.h>
+#include <common/contact/nodal_constraints.h>
+#include <common/estimate/marking.h>
+#include <common/estimate/residual_estimator.h>
+#include <common/multigrid/leaf_matrix.h>
+#include <common/multigrid/level_hierarchy.h>
+#include <common/output/console.h>
+#include <common/output/fields.h>
+#include <common/output/history.h>
+#include <common/output/run_directory.h>
+#include <common/scene/parameters.h>
+#include <common/scene/scene.h>
+#include <common/solvers/coulomb_solver.h>
+#include <common/solvers/initial_guess.h>
+
+#include <cstdlib>
+#include <exception>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <sstream>
+
+namespace StepFriction2d
+{
+  using namespace dealii;
+  using namespace Friction;
+
+  // @sect3{The <code>ContactProblem</code> class}
+
+  // The main class looks like that of step-40, with the same cycle of setting
+  // up, assembling, solving, estimating and refining. Two things are different.
+  //
+  // First, the stiffness matrix is assembled by Trilinos, which knows how to
+  // gather contributions from several processes, but then copied to a
+  // <code>NodeBlockMatrix</code>: contact is a matter of nodes, not of single
+  // degrees of freedom, and the solver below works with the $d\times d$ blocks
+  // that couple two nodes.
+  //
+  // Second, there are two kinds of constraints, and they are kept apart.
+  // Hanging nodes are condensed, as always. Prescribed displacements are not:
+  // the rows of prescribed degrees of freedom stay in the matrix, so that
+  // $Au-f$ is the nodal force at any node of the body, and the solver simply
+  // leaves these components alone. The nodal forces on the contact boundary are
+  // the unknowns we care about most.
+  template <int dim>
+  class ContactProblem
+  {
+  public:
+    ContactProblem(const Parameters &parameters, std::ostream &console);
+
+    bool run();
+
+  private:
+    void make_coarse_mesh();
+
+    void setup_system();
+
+    void assemble_system();
+
+    void solve(const unsigned int level);
+
+    ErrorEstimate estimate_error() const;
+
+    bool refine_mesh(const ErrorEstimate &estimate);
+
+    void record_level(const unsigned int level, const ErrorEstimate &estimate);
+
+    void compare_with_exact_solution();
+
+    const Parameters parameters;
+    const Scene<dim> scene;
+
+    parallel::distributed::Triangulation<dim> triangulation;
+    const MappingQ<dim>                       mapping;
+    const FESystem<dim>                       fe;
+    DoFHandler<dim>                           dof_handler;
+
+    AffineConstraints<double>              hanging_node_constraints;
+    std::unique_ptr<NodalConstraints<dim>> nodal_constraints;
+    std::unique_ptr<ContactBoundary<dim>>  contact_boundary;
+    NodeBlockMatrix<dim>                   stiffness;
+    VectorType                             forces;
+
+    VectorType                    displacement;
+    VectorType                    tractions;
+    std::unique_ptr<ContactState> state;
+    SolverReport                  report;
+
+    RunDirectory     directory;
+    Console          console;
+    History<dim>     history;
+    FieldWriter<dim> fields;
+
+    double setup_seconds    = 0.;
+    double solve_seconds    = 0.;
+    double last_exact_error = 0.;
+  };
+
+
+
+  // @sect4{ContactProblem::ContactProblem}
+
+  // Multigrid on locally refined meshes wants the levels of the triangulation
+  // to have degrees of freedom of their own, hence
+  // <code>construct_multigrid_hierarchy</code>. The other flag keeps cells that
+  // share but a vertex within one level of each other. Our level matrices rely
+  // on it: it makes each hanging node belong to exactly one level.
+  template <int dim>
+  ContactProblem<dim>::ContactProblem(const Parameters &parameters,
+                                      std::ostream     &out)
+    : parameters(parameters)
+    , scene(parameters)
+    , triangulation(MPI_COMM_WORLD,
+                    Triangulation<dim>::limit_level_difference_at_vertices,
+                    parallel::distributed::Triangulation<
+                      dim>::construct_multigrid_hierarchy)
+    , mapping(1)
+    , fe(FE_Q<dim>(1), dim)
+    , dof_handler(triangulation)
+    , directory(parameters.output.directory)
+    , console(out,
+              parameters.output.times ? Console::Times::shown
+                                      : Console::Times::hidden,
+              parameters.output.verbosity == Verbosity::quiet)
+    , history(directory.file("history.h5"),
+              parameters.name,
+              parameters.text,
+              FRICTION_VERSION)
+    , fields(directory,
+             scene.material().lambda(),
+             scene.material().mu(),
+             scene.contact_boundary_id())
+  {}
+
+
+
+  // @sect4{ContactProblem::make_coarse_mesh}
+
+  // The mesh is a matter of the scene. The coarsest level is solved directly,
+  // so it should be as coarse as the geometry allows; whatever else is refined
+  // globally at the start only has the first level begin on a finer mesh.
+  template <int dim>
+  void
+  ContactProblem<dim>::make_coarse_mesh()
+  {
+    scene.make_coarse_mesh(triangulation);
+    triangulation.refine_global(parameters.refinement.initial_refinements);
+  }
+
+
+
+  // @sect4{ContactProblem::setup_system}
+
+  // <code>distribute_dofs</code> numbers the degrees of freedom of the leaf
+  // mesh, <code>distribute_mg_dofs</code> those of each level. With
+  // <code>FESystem(FE_Q(1), dim)</code> the $d$ degrees of freedom of a vertex
+  // get consecutive numbers in either case, and that is all we need to speak of
+  // nodes.
+  template <int dim>
+  void
+  ContactProblem<dim>::setup_system()
+  {
+    dof_handler.distribute_dofs(fe);
+    dof_handler.distribute_mg_dofs();
+
+    const IndexSet &owned = dof_handler.locally_owned_dofs();
+    IndexSet        relevant;
+    DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+
+    hanging_node_constraints = Compatibility::make_constraints(owned, relevant);
+    DoFTools::make_hanging_node_constraints(dof_handler,
+                                            hanging_node_constraints);
+    hanging_node_constraints.close();
+
+    AffineConstraints<double> prescribed =
+      Compatibility::make_constraints(owned, relevant);
+    for (const auto &condition : scene.dirichlet_conditions())
+      VectorTools::interpolate_boundary_values(mapping,
+                                               dof_handler,
+                                               condition.boundary_id,
+                                               *condition.displacement,
+                                               prescribed,
+                                               condition.components);
+
+    // A scene may pin single vertices, to keep a body that is only pushed from
+    // drifting away.
+    for (const auto &pinned : scene.pinned_points())
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (!cell->is_artificial())
+          for (const unsigned int v : cell->vertex_indices())
+            if (cell->vertex(v).distance(pinned.point) <
+                1e-8 * cell->diameter())
+              {
+                const auto dof = cell->vertex_dof_index(v, pinned.component);
+                if (!prescribed.is_constrained(dof))
+                  {
+                    prescribed.add_line(dof);
+                    prescribed.set_inhomogeneity(dof, pinned.value);
+                  }
+              }
+    prescribed.close();
+
+    nodal_constraints = std::make_unique<NodalConstraints<dim>>(
+      dof_handler, hanging_node_constraints, prescribed);
+
+    // Now for contact. The obstacle is rigid and known, so that all there is to
+    // know about it are the nodes of the body that may touch it, the direction
+    // in which each of them would do so, and how far it is away: the gap.
+    contact_boundary =
+      std::make_unique<ContactBoundary<dim>>(mapping,
+                                             dof_handler,
+                                             hanging_node_constraints,
+                                             *nodal_constraints,
+                                             scene.contact_boundary_id(),
+                                             scene.obstacle(),
+                                             scene.contact_normal());
+  }
+
+
+
+  // @sect4{ContactProblem::assemble_system}
+
+  // Assembly is that of linear elasticity, for friction and contact do not
+  // appear in the stiffness matrix: they only restrict what the solution may do
+  // at the nodes of the contact boundary. The bilinear form is
+  // $a(u,v)=\int \lambda\, \mathrm{div}\,u\,\mathrm{div}\,v +
+  // 2\mu\,\varepsilon(u):\varepsilon(v)$; written with the gradients $g_i$ of
+  // the scalar shape functions of components $c_i$ its entries are
+  // $\lambda\, g_{i,c_i} g_{j,c_j} + \mu\, g_{i,c_j} g_{j,c_i} +
+  // \mu\,\delta_{c_ic_j} g_i\cdot g_j$.
+  template <int dim>
+  void
+  ContactProblem<dim>::assemble_system()
+  {
+    IndexSet relevant;
+    DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+    TrilinosWrappers::SparseMatrix matrix;
+    {
+      DynamicSparsityPattern pattern(relevant);
+      DoFTools::make_sparsity_pattern(dof_handler,
+                                      pattern,
+                                      hanging_node_constraints,
+                                      /*keep constrained dofs =*/false);
+      matrix.reinit(dof_handler.locally_owned_dofs(),
+                    dof_handler.locally_owned_dofs(),
+                    pattern,
+                    Compatibility::mpi_communicator(dof_handler));
+    }
+    forces.reinit(nodal_constraints->partitioner());
+
+    const QGauss<dim>     quadrature(fe.degree + 1);
+    const QGauss<dim - 1> face_quadrature(fe.degree + 3);
+    FEValues<dim>         fe_values(mapping,
+                            fe,
+                            quadrature,
+                            update_values | update_gradients |
+                              update_quadrature_points | update_JxW_values);
+    FEFaceValues<dim>     face_values(mapping,
+                                  fe,
+                                  face_quadrature,
+                                  update_values | update_quadrature_points |
+                                    update_JxW_values);
+
+    const unsigned int dofs_per_cell = fe.n_dofs_per_cell();
+    const double       lambda        = scene.material().lambda();
+    const double       mu            = scene.material().mu();
+
+    FullMatrix<double> cell_matrix(dofs_per_cell, dofs_per_cell);
+    Vector<double>     cell_forces(dofs_per_cell);
+    Vector<double>     load(dim);
+    std::vector<types::global_dof_index> dof_indices(dofs_per_cell);
+    std::vector<unsigned int>            component(dofs_per_cell);
+    for (unsigned int i = 0; i < dofs_per_cell; ++i)
+      component[i] = fe.system_to_component_index(i).first;
+
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          cell_matrix = 0.;
+          cell_forces = 0.;
+          fe_values.reinit(cell);
+          for (const unsigned int q : fe_values.quadrature_point_indices())
+            {
+              const double JxW = fe_values.JxW(q);
+              for (unsigned int i = 0; i < dofs_per_cell; ++i)
+                {
+                  const Tensor<1, dim> &g_i = fe_values.shape_grad(i, q);
+                  for (unsigned int j = 0; j < dofs_per_cell; ++j)
+                    {
+                      const Tensor<1, dim> &g_j = fe_values.shape_grad(j, q);
+                      double                entry =
+                        lambda * g_i[component[i]] * g_j[component[j]] +
+                        mu * g_i[component[j]] * g_j[component[i]];
+                      if (component[i] == component[j])
+                        entry += mu * (g_i * g_j);
+                      cell_matrix(i, j) += entry * JxW;
+                    }
+                }
+              if (scene.body_force() != nullptr)
+                {
+                  scene.body_force()->vector_value(
+                    fe_values.quadrature_point(q), load);
+                  for (unsigned int i = 0; i < dofs_per_cell; ++i)
+                    cell_forces(i) +=
+                      load[component[i]] * fe_values.shape_value(i, q) * JxW;
+                }
+            }
+
+          for (const unsigned int f : cell->face_indices())
+            for (const auto &condition : scene.traction_conditions())
+              if (cell->face(f)->at_boundary() &&
+                  cell->face(f)->boundary_id() == condition.boundary_id)
+                {
+                  face_values.reinit(cell, f);
+                  for (const unsigned int q :
+                       face_values.quadrature_point_indices())
+                    {
+                      condition.traction->vector_value(
+                        face_values.quadrature_point(q), load);
+                      for (unsigned int i = 0; i < dofs_per_cell; ++i)
+                        cell_forces(i) += load[component[i]] *
+                          face_values.shape_value(i, q) * face_values.JxW(q);
+                    }
+                }
+
+          cell->get_dof_indices(dof_indices);
+          hanging_node_constraints.distribute_local_to_global(
+            cell_matrix, cell_forces, dof_indices, matrix, forces);
+        }
+    matrix.compress(VectorOperation::add);
+    forces.compress(VectorOperation::add);
+
+    stiffness = make_node_block_matrix<dim>(matrix, *nodal_constraints);
+  }
+
+
+
+  // @sect4{ContactProblem::solve}
+
+  // Here the five parts of the method come together. What the solver is given
+  // is the discrete problem, which is no more than references to what we have
+  // set up, and the hierarchy of levels; from these it builds <ul> <li> the
+  // leading relaxation on the leaf mesh, which enforces contact and
+  //   friction node by node (<code>MonotoneSmoother</code>);
+  // <li> phases, truncation and derivatives of friction
+  //   (<code>Linearization</code>, <code>Truncation</code>);
+  // <li> one linear multigrid cycle for a correction (<code>CoarseCycle</code>
+  //   on the Galerkin products in <code>LevelMatrices</code>);
+  // <li> the recombination of that correction with the last one
+  //   (<code>Recombination</code>);
+  // <li> projection to the admissible displacements and line search
+  //   (<code>TrescaFunctional</code>).
+  // </ul>
+  // The coefficient of friction of Tresca's law is absorbed in the given
+  // bounds.
+  template <int dim>
+  void
+  ContactProblem<dim>::solve(const unsigned int level)
+  {
+    const LevelHierarchy<dim> hierarchy(dof_handler, *nodal_constraints);
+    const bool tresca = scene.friction_law() == FrictionLaw::tresca;
+    const DiscreteProblem<dim> problem = {
+      stiffness,
+      forces,
+      *nodal_constraints,
+      *contact_boundary,
+      scene.friction_law(),
+      tresca ? 1. : scene.friction_coefficient()};
+
+    // The initial guess: what the coarser mesh has found, made admissible on
+    // this one.
+    state = std::make_unique<ContactState>(
+      make_initial_guess(displacement,
+                         tractions,
+                         *nodal_constraints,
+                         *contact_boundary,
+                         problem.has_friction()));
+    if (tresca)
+      for (unsigned int p = 0; p < contact_boundary->size(); ++p)
+        state->set_normal_force(
+          p,
+          (*contact_boundary)[p].measure *
+            scene.friction_bound()->value((*contact_boundary)[p].point));
+
+    Timer              timer;
+    CoulombSolver<dim> solver(
+      dof_handler, hierarchy, problem, parameters.solver);
+    setup_seconds += timer.wall_time();
+
+    timer.restart();
+    report =
+      solver.solve(displacement,
+                   *state,
+                   [&](const unsigned int cycle, const double increment) {
+                     console.progress(level, cycle, increment);
+                   });
+    solve_seconds = timer.wall_time();
+
+    hanging_node_constraints.distribute(displacement);
+    displacement.update_ghost_values();
+    tractions = contact_tractions(
+      report.residual, *nodal_constraints, *contact_boundary, *state);
+    hanging_node_constraints.distribute(tractions);
+    tractions.update_ghost_values();
+  }
+
+
+
+  // @sect4{ContactProblem::estimate_error}
+
+  // On the contact boundary the estimator compares the stress of the finite
+  // element solution with the contact tractions, which are known much better;
+  // elsewhere it is the usual residual estimator of elasticity.
+  template <int dim>
+  ErrorEstimate
+  ContactProblem<dim>::estimate_error() const
+  {
+    EstimatorProblem<dim> problem;
+    problem.lambda               = scene.material().lambda();
+    problem.mu                   = scene.material().mu();
+    problem.body_force           = scene.body_force().get();
+    problem.contact_boundary     = scene.contact_boundary_id();
+    problem.friction_coefficient = scene.friction_coefficient();
+    for (const auto &condition : scene.traction_conditions())
+      problem.tractions[condition.boundary_id] = condition.traction.get();
+    for (const auto &condition : scene.dirichlet_conditions())
+      problem.dirichlet[condition.boundary_id] = condition.components;
+
+    VectorType normal(nodal_constraints->partitioner());
+    VectorType gap_vector(nodal_constraints->partitioner());
+    for (const ContactNode<dim> &node : *contact_boundary)
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          normal.local_element(dim * node.node + d) = node.normal()[d];
+          gap_vector.local_element(dim * node.node + d) =
+            node.gap * node.normal()[d];
+        }
+    for (VectorType *vector : {&normal, &gap_vector})
+      {
+        hanging_node_constraints.distribute(*vector);
+        vector->update_ghost_values();
+      }
+
+    EstimatorContact contact;
+    contact.traction   = &tractions;
+    contact.normal     = &normal;
+    contact.gap_vector = &gap_vector;
+    return Friction::estimate_error(
+      mapping, dof_handler, problem, displacement, contact);
+  }
+
+
+
+  // @sect4{ContactProblem::refine_mesh}
+
+  // Nested iteration: the displacement and the contact tractions are
+  // interpolated to the refined mesh as they are. Tractions rather than nodal
+  // forces, because a force belongs to a mesh, and halves when the mesh is
+  // refined.
+  template <int dim>
+  bool
+  ContactProblem<dim>::refine_mesh(const ErrorEstimate &estimate)
+  {
+    if (parameters.refinement.strategy == RefinementStrategy::uniform)
+      triangulation.set_all_refine_flags();
+    else if (mark_by_maximum(triangulation,
+                             estimate.cell_errors,
+                             parameters.refinement.marking) == 0)
+      return false;
+
+    parallel::distributed::SolutionTransfer<dim, VectorType> transfer(
+      dof_handler);
+    triangulation.prepare_coarsening_and_refinement();
+    const std::vector<const VectorType *> old_vectors = {&displacement,
+                                                         &tractions};
+    transfer.prepare_for_coarsening_and_refinement(old_vectors);
+    triangulation.execute_coarsening_and_refinement();
+
+    Timer timer;
+    setup_system();
+    setup_seconds = timer.wall_time();
+
+    displacement.reinit(nodal_constraints->partitioner());
+    tractions.reinit(nodal_constraints->partitioner());
+    std::vector<VectorType *> new_vectors = {&displacement, &tractions};
+    transfer.interpolate(new_vectors);
+    return true;
+  }
+
+
+
+  // @sect4{ContactProblem::record_level}
+
+  // What is known at the end of a level: for the table on the console, for
+  // <code>history.h5</code> which scripts can read, and for ParaView.
+  template <int dim>
+  void
+  ContactProblem<dim>::record_level(const unsigned int   level,
+                                    const ErrorEstimate &estimate)
+  {
+    LevelRecord record;
+    record.level            = level;
+    record.cells            = triangulation.n_global_active_cells();
+    record.dofs             = dof_handler.n_dofs();
+    record.contact_nodes    = state->n_contact();
+    record.sticky_nodes     = state->n_sticking();
+    record.outer_iterations = report.outer_iterations;
+    record.cycles           = report.cycles.size();
+    record.contraction      = report.contraction;
+    record.energy           = report.energy;
+    record.estimated_error  = estimate.total;
+    record.certificate      = report.certificate.largest();
+    record.setup_seconds    = setup_seconds;
+    record.solve_seconds    = solve_seconds;
+
+    std::vector<ContactRecord<dim>> contact;
+    Tensor<1, dim>                  tangential_force;
+    for (unsigned int p = 0; p < contact_boundary->size(); ++p)
+      {
+        const ContactNode<dim> &node = (*contact_boundary)[p];
+        ContactRecord<dim>      row;
+        row.dof =
+          nodal_constraints->partitioner()->local_to_global(dim * node.node);
+        row.point   = node.point;
+        row.normal  = node.normal();
+        row.gap     = node.gap;
+        row.measure = node.measure;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            row.displacement[d] =
+              displacement.local_element(dim * node.node + d);
+            row.force[d] = -report.residual.local_element(dim * node.node + d);
+          }
+        row.state = !state->in_contact(p) ? 0 : state->sticks(p) ? 2 : 1;
+        contact.push_back(row);
+
+        const double normal_force = -row.force * row.normal;
+        tangential_force += row.force + normal_force * row.normal;
+        if (row.state > 0)
+          {
+            record.normal_force += normal_force;
+            record.max_pressure =
+              std::max(record.max_pressure, normal_force / row.measure);
+            record.contact_half_width += .5 * row.measure;
+            if (row.state == 2)
+              record.stick_half_width += .5 * row.measure;
+          }
+      }
+    record.tangential_force = tangential_force.norm();
+
+    std::vector<CycleRecord> cycles;
+    for (const CycleInfo &info : report.cycles)
+      {
+        CycleRecord row;
+        row.level     = level;
+        row.increment = info.increment;
+        row.energy    = info.energy;
+        row.damping   = info.damping;
+        row.truncated = static_cast<unsigned int>(info.truncated + .5);
+        row.residual  = info.residual;
+        cycles.push_back(row);
+      }
+
+    console.level_complete(record);
+    history.add_level(record, cycles, contact);
+    if (parameters.output.fields)
+      fields.write_level(level,
+                         mapping,
+                         dof_handler,
+                         displacement,
+                         hanging_node_constraints,
+                         contact,
+                         estimate.cell_errors.size() > 0 ? &estimate.cell_errors
+                                                         : nullptr);
+  }
+
+
+
+  // @sect4{ContactProblem::compare_with_exact_solution}
+
+  // Some scenes know their solution. The error in the energy norm, which the
+  // method minimises, is then measured with a quadrature formula that is good
+  // enough for solutions that are only piecewise smooth.
+  template <int dim>
+  void
+  ContactProblem<dim>::compare_with_exact_solution()
+  {
+    const Function<dim>                 &exact = *scene.exact_displacement();
+    const QGauss<dim>                    quadrature(4);
+    FEValues<dim>                        fe_values(mapping,
+                            fe,
+                            quadrature,
+                            update_gradients | update_quadrature_points |
+                              update_JxW_values);
+    const FEValuesExtractors::Vector     u(0);
+    std::vector<SymmetricTensor<2, dim>> strains(quadrature.size());
+    Vector<double>                       value(dim);
+
+    double energy_error = 0, node_error = 0, node_size = 0;
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          fe_values.reinit(cell);
+          fe_values[u].get_function_symmetric_gradients(displacement, strains);
+          for (const unsigned int q : fe_values.quadrature_point_indices())
+            {
+              Tensor<2, dim> gradient;
+              for (unsigned int c = 0; c < dim; ++c)
+                gradient[c] = exact.gradient(fe_values.quadrature_point(q), c);
+              const SymmetricTensor<2, dim> e =
+                symmetrize(gradient) - strains[q];
+              energy_error += (scene.material().lambda() * trace(e) * trace(e) +
+                               2. * scene.material().mu() * (e * e)) *
+                fe_values.JxW(q);
+            }
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              exact.vector_value(cell->vertex(v), value);
+              for (unsigned int d = 0; d < dim; ++d)
+                {
+                  node_error = std::max(
+                    node_error,
+                    std::abs(value[d] -
+                             displacement(cell->vertex_dof_index(v, d))));
+                  node_size = std::max(node_size, std::abs(value[d]));
+                }
+            }
+        }
+    energy_error = std::sqrt(energy_error);
+
+    std::ostringstream text;
+    text << std::scientific << std::setprecision(2)
+         << "         error against the exact solution: energy norm "
+         << energy_error;
+    if (last_exact_error > 0 &&
+        parameters.refinement.strategy == RefinementStrategy::uniform)
+      text << std::fixed << " (order "
+           << std::log2(last_exact_error / energy_error) << ")"
+           << std::scientific;
+    if (node_error > 1e-10 * node_size)
+      text << ", nodes " << node_error / node_size << " of the largest";
+    else
+      text << ", nodes exact to 1e-10";
+    console.note(text.str());
+    last_exact_error = energy_error;
+  }
+
+
+
+  // @sect4{ContactProblem::run}
+
+  // The loop over levels. It ends when the mesh is fine enough, or when a level
+  // could not be solved: then the certificate says by how much its best iterate
+  // violates which law, and the program must not pretend otherwise.
+  template <int dim>
+  bool
+  ContactProblem<dim>::run()
+  {
+    if (scene.friction_law() == FrictionLaw::coulomb &&
+        scene.friction_coefficient() >
+          eck_bound(dim, scene.material().poisson_ratio()))
+      {
+        std::ostringstream text;
+        text << "Warning: the coefficient of friction "
+             << scene.friction_coefficient() << " is above Eck's bound "
+             << std::setprecision(3)
+             << eck_bound(dim, scene.material().poisson_ratio())
+             << " for this Poisson ratio, below which a solution is known to "
+                "exist; there may be none, or several.";
+        console.note(text.str());
+      }
+
+    make_coarse_mesh();
+    Timer timer;
+    setup_system();
+    setup_seconds = timer.wall_time();
+    displacement.reinit(nodal_constraints->partitioner());
+    tractions.reinit(nodal_constraints->partitioner());
+
+    for (unsigned int level = 0;; ++level)
+      {
+        timer.restart();
+        assemble_system();
+        setup_seconds += timer.wall_time();
+        solve(level);
+
+        const bool last = level >= parameters.refinement.levels ||
+          dof_handler.n_dofs() >= parameters.refinement.maximum_dofs;
+        const bool adaptive =
+          parameters.refinement.strategy == RefinementStrategy::adaptive;
+        ErrorEstimate estimate;
+        if (parameters.refinement.estimate_error || (adaptive && !last))
+          estimate = estimate_error();
+
+        record_level(level, estimate);
+        if (scene.exact_displacement() != nullptr)
+          compare_with_exact_solution();
+
+        if (!report.converged)
+          {
+            console.note(
+              "No convergence on level " + std::to_string(level) + " within " +
+              std::to_string(report.cycles.size()) +
+              " cycles. Certificate: " + report.certificate.describe() + ".");
+            return false;
+          }
+        if (last || !refine_mesh(estimate))
+          return true;
+      }
+  }
+} // namespace StepFriction2d
+
+
+
+// @sect3{The <code>main</code> function}
+
+// A scene file, then entries of it that are to be different this time. Whatever
+// is wrong with them is said in one sentence, without a stack trace.
+int
+main(int argc, char *argv[])
+{
+  using namespace dealii;
+  using namespace Friction;
+
+  const std::string usage =
+    "Usage: step-friction-2d SCENE.prm [Section/Entry=value ...]\n"
+    "       step-friction-2d --parameters   print all entries with defaults\n"
+    "       step-friction-2d --help         print this\n"
+    "\n"
+    "Solves a contact problem with friction in two dimensions by monotone\n"
+    "multigrid. SCENE.prm describes body, obstacle, loads and solver; entries\n"
+    "given on the command line take precedence over the file, for example\n"
+    "\n"
+    "  step-friction-2d hertz.prm 'Contact/Friction coefficient=0.05'\n"
+    "\n"
+    "The results go to the directory given by Output/Directory: history.h5 "
+    "and\n"
+    "fields for ParaView. Exit status: 0 solved, 1 not converged, 2 bad "
+    "input.\n";
+
+  try
+    {
+      Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+      const std::vector<std::string>   arguments(argv + 1, argv + argc);
+      if (arguments.empty() || arguments[0] == "--help" || arguments[0] == "-h")
+        {
+          (arguments.empty() ? std::cerr : std::cout) << usage;
+          return arguments.empty() ? 2 : 0;
+        }
+      if (arguments[0] == "--parameters")
+        {
+          print_default_parameters(std::cout);
+          return 0;
+        }
+      if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+        throw InputError("More than one process is not supported yet: run this "
+                         "program without mpirun, or with -np 1.");
+
+      const Parameters parameters =
+        read_parameters(arguments[0], {arguments.begin() + 1, arguments.end()});
+      StepFriction2d::ContactProblem<2> problem(parameters, std::cout);
+      return problem.run() ? 0 : 1;
+    }
+  catch (const InputError &error)
+    {
+      std::cerr << "step-friction-2d: " << error.what() << std::endl;
+      return 2;
+    }
+  catch (const std::exception &error)
+    {
+      std::cerr << "step-friction-2d: unexpected error: " << error.what()
+                << std::endl;
+      return 3;
+    }
+}
