@@ -269,18 +269,16 @@ namespace StepFriction2d
   {
     IndexSet relevant;
     DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+    DynamicSparsityPattern pattern(relevant);
+    DoFTools::make_sparsity_pattern(dof_handler,
+                                    pattern,
+                                    hanging_node_constraints,
+                                    /*keep constrained dofs =*/false);
     TrilinosWrappers::SparseMatrix matrix;
-    {
-      DynamicSparsityPattern pattern(relevant);
-      DoFTools::make_sparsity_pattern(dof_handler,
-                                      pattern,
-                                      hanging_node_constraints,
-                                      /*keep constrained dofs =*/false);
-      matrix.reinit(dof_handler.locally_owned_dofs(),
-                    dof_handler.locally_owned_dofs(),
-                    pattern,
-                    Compatibility::mpi_communicator(dof_handler));
-    }
+    matrix.reinit(dof_handler.locally_owned_dofs(),
+                  dof_handler.locally_owned_dofs(),
+                  pattern,
+                  Compatibility::mpi_communicator(dof_handler));
     forces.reinit(nodal_constraints->partitioner());
 
     const QGauss<dim>     quadrature(fe.degree + 1);
@@ -365,7 +363,8 @@ namespace StepFriction2d
     matrix.compress(VectorOperation::add);
     forces.compress(VectorOperation::add);
 
-    stiffness = make_node_block_matrix<dim>(matrix, *nodal_constraints);
+    stiffness =
+      make_node_block_matrix<dim>(matrix, pattern, *nodal_constraints);
   }
 
 

@@ -7,6 +7,7 @@ namespace Friction
   template <int dim>
   NodeBlockMatrix<dim>
   make_node_block_matrix(const TrilinosWrappers::SparseMatrix &matrix,
+                         const DynamicSparsityPattern         &pattern,
                          const NodalConstraints<dim>          &constraints)
   {
     const auto        &partitioner = *constraints.partitioner();
@@ -22,7 +23,7 @@ namespace Friction
           {
             // The rows of the components of a node have the same pattern.
             const auto dof = partitioner.local_to_global(dim * i);
-            for (auto entry = matrix.begin(dof); entry != matrix.end(dof);
+            for (auto entry = pattern.begin(dof); entry != pattern.end(dof);
                  ++entry)
               {
                 const unsigned int j = constraints.node_of_dof(entry->column());
@@ -40,22 +41,12 @@ namespace Friction
 
     NodeBlockMatrix<dim> result(std::move(starts), std::move(columns));
     for (unsigned int i = 0; i < n_rows; ++i)
-      if (!constraints.is_hanging(i))
-        for (unsigned int r = 0; r < dim; ++r)
-          {
-            const auto dof = partitioner.local_to_global(dim * i + r);
-            for (auto entry = matrix.begin(dof); entry != matrix.end(dof);
-                 ++entry)
-              {
-                const unsigned int local =
-                  partitioner.global_to_local(entry->column());
-                if (constraints.is_hanging(local / dim))
-                  continue;
-                const std::size_t position = result.find(i, local / dim);
-                result.block(position)[(local % dim) * dim + r] =
-                  entry->value();
-              }
-          }
+      for (std::size_t e = result.row_begin(i); e < result.row_end(i); ++e)
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int r = 0; r < dim; ++r)
+            result.block(e)[c * dim + r] = matrix.el(
+              partitioner.local_to_global(dim * i + r),
+              partitioner.local_to_global(dim * result.column(e) + c));
     return result;
   }
 
@@ -63,8 +54,10 @@ namespace Friction
 
   template NodeBlockMatrix<2>
   make_node_block_matrix(const TrilinosWrappers::SparseMatrix &,
+                         const DynamicSparsityPattern &,
                          const NodalConstraints<2> &);
   template NodeBlockMatrix<3>
   make_node_block_matrix(const TrilinosWrappers::SparseMatrix &,
+                         const DynamicSparsityPattern &,
                          const NodalConstraints<3> &);
 } // namespace Friction

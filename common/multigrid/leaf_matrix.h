@@ -4,6 +4,7 @@
 #include <common/contact/nodal_constraints.h>
 #include <common/multigrid/node_block_matrix.h>
 
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
 namespace Friction
@@ -13,12 +14,17 @@ namespace Friction
    * contributions from all processes, node blocks are good at being relaxed;
    * the former is no longer needed after this.
    *
+   * The pattern that the matrix was made from is needed once more, since
+   * TrilinosWrappers::SparseMatrix allows to look up entries quickly, but not
+   * to iterate over a row in time independent of the size of the matrix.
+   *
    * Rows and columns of hanging nodes, which are condensed and hold but a
    * number on the diagonal, are left empty.
    */
   template <int dim>
   NodeBlockMatrix<dim>
   make_node_block_matrix(const TrilinosWrappers::SparseMatrix &matrix,
+                         const DynamicSparsityPattern         &pattern,
                          const NodalConstraints<dim>          &constraints);
 } // namespace Friction
 

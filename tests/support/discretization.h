@@ -50,8 +50,8 @@ namespace Tests
 
   /**
    * A scene discretised on a given mesh: what the step programs do in their
-   * setup and assembly functions, in one object, for tests that look at one part
-   * of the solver.
+   * setup and assembly functions, in one object, for tests that look at one
+   * part of the solver.
    */
   template <int dim>
   class Discretization
@@ -67,14 +67,12 @@ namespace Tests
       IndexSet relevant;
       DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
 
-      hanging =
-        Compatibility::make_constraints(dof_handler.locally_owned_dofs(),
-                                        relevant);
+      hanging = Compatibility::make_constraints(
+        dof_handler.locally_owned_dofs(), relevant);
       DoFTools::make_hanging_node_constraints(dof_handler, hanging);
       hanging.close();
-      AffineConstraints<double> dirichlet =
-        Compatibility::make_constraints(dof_handler.locally_owned_dofs(),
-                                        relevant);
+      AffineConstraints<double> dirichlet = Compatibility::make_constraints(
+        dof_handler.locally_owned_dofs(), relevant);
       for (const auto &condition : scene.dirichlet_conditions())
         VectorTools::interpolate_boundary_values(mapping,
                                                  dof_handler,
@@ -97,17 +95,17 @@ namespace Tests
               }
       dirichlet.close();
 
-      constraints = std::make_unique<NodalConstraints<dim>>(dof_handler,
-                                                            hanging,
-                                                            dirichlet);
+      constraints = std::make_unique<NodalConstraints<dim>>(
+        dof_handler, hanging, dirichlet);
       assemble(scene);
-      contact = std::make_unique<ContactBoundary<dim>>(mapping,
-                                                       dof_handler,
-                                                       hanging,
-                                                       *constraints,
-                                                       scene.contact_boundary_id(),
-                                                       scene.obstacle(),
-                                                       scene.contact_normal());
+      contact =
+        std::make_unique<ContactBoundary<dim>>(mapping,
+                                               dof_handler,
+                                               hanging,
+                                               *constraints,
+                                               scene.contact_boundary_id(),
+                                               scene.obstacle(),
+                                               scene.contact_normal());
       hierarchy =
         std::make_unique<LevelHierarchy<dim>>(dof_handler, *constraints);
       friction_law         = scene.friction_law();
@@ -168,21 +166,21 @@ namespace Tests
                        Compatibility::mpi_communicator(dof_handler));
       forces.reinit(constraints->partitioner());
 
-      const QGauss<dim>     quadrature(2);
-      const QGauss<dim - 1> face_quadrature(4);
-      FEValues<dim>         fe_values(mapping,
+      const QGauss<dim>                    quadrature(2);
+      const QGauss<dim - 1>                face_quadrature(4);
+      FEValues<dim>                        fe_values(mapping,
                               fe,
                               quadrature,
                               update_gradients | update_values |
                                 update_quadrature_points | update_JxW_values);
-      FEFaceValues<dim>     face_values(mapping,
+      FEFaceValues<dim>                    face_values(mapping,
                                     fe,
                                     face_quadrature,
                                     update_values | update_quadrature_points |
                                       update_JxW_values);
-      const unsigned int    n_dofs = fe.n_dofs_per_cell();
-      FullMatrix<double>    cell_matrix(n_dofs, n_dofs);
-      Vector<double>        cell_rhs(n_dofs), value(dim);
+      const unsigned int                   n_dofs = fe.n_dofs_per_cell();
+      FullMatrix<double>                   cell_matrix(n_dofs, n_dofs);
+      Vector<double>                       cell_rhs(n_dofs), value(dim);
       std::vector<types::global_dof_index> indices(n_dofs);
       const double                         lambda = scene.material().lambda();
       const double                         mu     = scene.material().mu();
@@ -196,7 +194,8 @@ namespace Tests
               {
                 for (unsigned int i = 0; i < n_dofs; ++i)
                   {
-                    const unsigned int   ci = fe.system_to_component_index(i).first;
+                    const unsigned int ci =
+                      fe.system_to_component_index(i).first;
                     const Tensor<1, dim> gi = fe_values.shape_grad(i, q);
                     for (unsigned int j = 0; j < n_dofs; ++j)
                       {
@@ -214,9 +213,9 @@ namespace Tests
                     scene.body_force()->vector_value(
                       fe_values.quadrature_point(q), value);
                     for (unsigned int i = 0; i < n_dofs; ++i)
-                      cell_rhs(i) += value[fe.system_to_component_index(i).first] *
-                                     fe_values.shape_value(i, q) *
-                                     fe_values.JxW(q);
+                      cell_rhs(i) +=
+                        value[fe.system_to_component_index(i).first] *
+                        fe_values.shape_value(i, q) * fe_values.JxW(q);
                   }
               }
             for (const unsigned int f : cell->face_indices())
@@ -233,7 +232,8 @@ namespace Tests
                           for (unsigned int i = 0; i < n_dofs; ++i)
                             cell_rhs(i) +=
                               value[fe.system_to_component_index(i).first] *
-                              face_values.shape_value(i, q) * face_values.JxW(q);
+                              face_values.shape_value(i, q) *
+                              face_values.JxW(q);
                         }
                     }
             cell->get_dof_indices(indices);
@@ -242,13 +242,14 @@ namespace Tests
           }
       stiffness.compress(VectorOperation::add);
       forces.compress(VectorOperation::add);
-      matrix = make_node_block_matrix<dim>(stiffness, *constraints);
+      matrix = make_node_block_matrix<dim>(stiffness, pattern, *constraints);
     }
   };
 
 
 
-  /** Prints the outcome of a check: only that, so that no digits are compared. */
+  /** Prints the outcome of a check: only that, so that no digits are compared.
+   */
   inline void
   check(const bool condition, const std::string &what)
   {
