@@ -234,6 +234,13 @@ namespace Friction
          "Adaptive: refine cells with at least this fraction of the largest "
          "error indicator."},
         {"Refinement",
+         "Contact zone",
+         "false",
+         flag,
+         "Adaptive: besides what the estimator marks, refine every cell whose "
+         "boundary is in contact, so that the contact stresses are resolved "
+         "equally well everywhere."},
+        {"Refinement",
          "Estimate error",
          "true",
          flag,
@@ -945,6 +952,7 @@ namespace Friction
       refinement.levels         = values.integer("Refinement/Levels");
       refinement.maximum_dofs   = values.integer("Refinement/Maximum dofs");
       refinement.marking        = values.number("Refinement/Marking");
+      refinement.contact_zone   = values.flag("Refinement/Contact zone");
       refinement.estimate_error = values.flag("Refinement/Estimate error");
     }
 

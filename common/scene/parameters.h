@@ -153,6 +153,7 @@ namespace Friction
       unsigned int       levels              = 0; ///< refinements after that
       unsigned int       maximum_dofs        = 0;
       double             marking             = .5; ///< of the largest indicator
+      bool               contact_zone        = false;
       bool               estimate_error      = true;
     };
 
