@@ -562,19 +562,21 @@ namespace StepFriction2d
                                     const ErrorEstimate &estimate)
   {
     LevelRecord record;
-    record.level            = level;
-    record.cells            = triangulation.n_global_active_cells();
-    record.dofs             = dof_handler.n_dofs();
-    record.contact_nodes    = state->n_contact();
-    record.sticky_nodes     = state->n_sticking();
-    record.outer_iterations = report.outer_iterations;
-    record.cycles           = report.cycles.size();
-    record.contraction      = report.contraction;
-    record.energy           = report.energy;
-    record.estimated_error  = estimate.total;
-    record.certificate      = report.certificate.largest();
-    record.setup_seconds    = setup_seconds;
-    record.solve_seconds    = solve_seconds;
+    record.level               = level;
+    record.cells               = triangulation.n_global_active_cells();
+    record.dofs                = dof_handler.n_dofs();
+    record.contact_nodes       = state->n_contact();
+    record.sticky_nodes        = state->n_sticking();
+    record.outer_iterations    = report.outer_iterations;
+    record.cycles              = report.cycles.size();
+    record.contraction         = report.contraction;
+    record.energy              = report.energy;
+    record.rho_tau             = report.rho_tau_as_printed();
+    record.rho_tau_contraction = report.rho_tau_contraction();
+    record.estimated_error     = estimate.total;
+    record.certificate         = report.certificate.largest();
+    record.setup_seconds       = setup_seconds;
+    record.solve_seconds       = solve_seconds;
 
     std::vector<ContactRecord<dim>> contact;
     Tensor<1, dim>                  tangential_force;
@@ -624,8 +626,17 @@ namespace StepFriction2d
         cycles.push_back(row);
       }
 
+    std::vector<OuterRecord> outer;
+    for (const double change : report.outer_changes)
+      {
+        OuterRecord row;
+        row.level  = level;
+        row.change = change;
+        outer.push_back(row);
+      }
+
     console.level_complete(record);
-    history.add_level(record, cycles, contact);
+    history.add_level(record, cycles, contact, outer);
     if (parameters.output.fields)
       fields.write_level(level,
                          mapping,

@@ -71,10 +71,12 @@ namespace Friction
   void
   History<dim>::add_level(const LevelRecord                     &level,
                           const std::vector<CycleRecord>        &cycles,
-                          const std::vector<ContactRecord<dim>> &contact)
+                          const std::vector<ContactRecord<dim>> &contact,
+                          const std::vector<OuterRecord>        &outer)
   {
     level_records.push_back(level);
     cycle_records.insert(cycle_records.end(), cycles.begin(), cycles.end());
+    outer_records.insert(outer_records.end(), outer.begin(), outer.end());
     if (!contact.empty())
       contact_levels.push_back({level.level, contact});
 
@@ -166,6 +168,8 @@ namespace Friction
       write("outer_iterations", &LevelRecord::outer_iterations);
       write("cycles", &LevelRecord::cycles);
       write("contraction", &LevelRecord::contraction);
+      write("rho_tau", &LevelRecord::rho_tau);
+      write("rho_tau_contraction", &LevelRecord::rho_tau_contraction);
       write("energy", &LevelRecord::energy);
       write("normal_force", &LevelRecord::normal_force);
       write("tangential_force", &LevelRecord::tangential_force);
@@ -190,6 +194,13 @@ namespace Friction
         write("damping", &CycleRecord::damping);
         write("truncated", &CycleRecord::truncated);
         write("residual", &CycleRecord::residual);
+      }
+
+    if (!outer_records.empty())
+      {
+        const dealii::HDF5::Group group = file.create_group("outer");
+        write_column(group, "level", outer_records, &OuterRecord::level);
+        write_column(group, "change", outer_records, &OuterRecord::change);
       }
 
     if (!contact_levels.empty())

@@ -28,6 +28,12 @@ namespace Friction
     /// Mean contraction of the increments per cycle.
     double contraction = 0.;
 
+    /// Algorithm 2: contraction of the relative changes of the normal forces,
+    /// as the thesis prints it (their geometric mean), and per outer iteration.
+    /// Zero for Algorithm 3.
+    double rho_tau             = 0.;
+    double rho_tau_contraction = 0.;
+
     /// The functional at the solution.
     double energy = 0.;
 
@@ -70,6 +76,18 @@ namespace Friction
   };
 
   /**
+   * What is kept of one outer iteration of Algorithm 2: one value in each
+   * dataset under `/outer`.
+   */
+  struct OuterRecord
+  {
+    unsigned int level = 0;
+
+    /// Relative change of the nodal normal forces.
+    double change = 0.;
+  };
+
+  /**
    * What is kept of one contact node: one row in each dataset under
    * `/contact/level_NN`, and one point of the boundary fields.
    */
@@ -105,7 +123,8 @@ namespace Friction
    * Root attributes: `scene`, `parameters` (the full text), `version`.
    * Datasets: the members of LevelRecord under `/levels` and those of
    * CycleRecord under
-   * `/cycles`, each one-dimensional; in `/contact/level_NN` the datasets
+   * `/cycles`, each one-dimensional; likewise those of OuterRecord under
+   * `/outer` if Algorithm 2 was used; in `/contact/level_NN` the datasets
    * `point`, `normal`, `displacement`, `force` (nodes $\times$ dim) and `gap`,
    * `measure`, `state` (one-dimensional). A level without contact nodes has no
    * group there, since HDF5 through deal.II has no empty datasets; for the same
@@ -137,7 +156,8 @@ namespace Friction
      */
     void add_level(const LevelRecord                     &level,
                    const std::vector<CycleRecord>        &cycles,
-                   const std::vector<ContactRecord<dim>> &contact);
+                   const std::vector<ContactRecord<dim>> &contact,
+                   const std::vector<OuterRecord>        &outer = {});
 
     const std::vector<LevelRecord> &levels() const;
 
@@ -162,6 +182,7 @@ namespace Friction
 
     std::vector<LevelRecord>  level_records;
     std::vector<CycleRecord>  cycle_records;
+    std::vector<OuterRecord>  outer_records;
     std::vector<ContactLevel> contact_levels;
   };
 } // namespace Friction
