@@ -1,0 +1,222 @@
+#ifndef friction_tests_support_nested_iteration_h
+#define friction_tests_support_nested_iteration_h
+
+#include <common/estimate/marking.h>
+#include <common/estimate/residual_estimator.h>
+#include <common/solvers/coulomb_solver.h>
+#include <common/solvers/initial_guess.h>
+
+#include <deal.II/distributed/solution_transfer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "discretization.h"
+
+namespace Tests
+{
+  /**
+   * The loop over levels of the step programs, one call at a time, for tests
+   * that want to look at the solution of each level, or at several solutions
+   * on the same mesh.
+   */
+  template <int dim>
+  class NestedIteration
+  {
+  public:
+    /** Makes the first mesh. The initial guess is zero. */
+    explicit NestedIteration(const Parameters &parameters)
+      : parameters(parameters)
+      , scene(parameters)
+      , mesh(make_triangulation<dim>())
+    {
+      scene.make_coarse_mesh(*mesh);
+      mesh->refine_global(parameters.refinement.initial_refinements);
+      discretize();
+      guess.reinit(discretization->constraints->partitioner());
+      guess_tractions.reinit(guess);
+    }
+
+    /** The initial guess of this level, made admissible. */
+    ContactState
+    make_guess(VectorType &u) const
+    {
+      u = guess;
+      return make_initial_guess(u,
+                                guess_tractions,
+                                *discretization->constraints,
+                                *discretization->contact,
+                                discretization->problem().has_friction());
+    }
+
+    /** Solves with other settings, starting from the same guess, and leaves
+     * the iteration over the levels alone. */
+    SolverReport
+    solve_with(const SolverSettings &settings,
+               VectorType           &u,
+               ContactState         &s) const
+    {
+      s = make_guess(u);
+      CoulombSolver<dim> solver(discretization->dof_handler,
+                                *discretization->hierarchy,
+                                discretization->problem(),
+                                settings);
+      SolverReport       result = solver.solve(u, s);
+      discretization->hanging.distribute(u);
+      return result;
+    }
+
+    /** Solves on this level. */
+    void
+    solve()
+    {
+      report = solve_with(parameters.solver, displacement, state);
+      displacement.update_ghost_values();
+      tractions = contact_tractions(report.residual,
+                                    *discretization->constraints,
+                                    *discretization->contact,
+                                    state);
+      discretization->hanging.distribute(tractions);
+      tractions.update_ghost_values();
+    }
+
+    /** Goes on to the next level, as the parameters say. Returns false if this
+     * was the last one. */
+    bool
+    refine()
+    {
+      if (level >= parameters.refinement.levels ||
+          discretization->dof_handler.n_dofs() >=
+            parameters.refinement.maximum_dofs)
+        return false;
+      ++level;
+      if (parameters.refinement.strategy == RefinementStrategy::uniform)
+        mesh->set_all_refine_flags();
+      else
+        mark();
+
+      const std::unique_ptr<Discretization<dim>> old =
+        std::move(discretization);
+      parallel::distributed::SolutionTransfer<dim, VectorType> transfer(
+        old->dof_handler);
+      mesh->prepare_coarsening_and_refinement();
+      const std::vector<const VectorType *> old_vectors = {&displacement,
+                                                           &tractions};
+      transfer.prepare_for_coarsening_and_refinement(old_vectors);
+      mesh->execute_coarsening_and_refinement();
+      old->dof_handler.distribute_dofs(old->fe);
+      discretize();
+
+      // Interpolated with the old object's new degrees of freedom, then
+      // carried over to those of the new one, whose numbers may differ.
+      VectorType u(old->dof_handler.locally_owned_dofs(), MPI_COMM_WORLD), t(u);
+      std::vector<VectorType *> new_vectors = {&u, &t};
+      transfer.interpolate(new_vectors);
+      guess.reinit(discretization->constraints->partitioner());
+      guess_tractions.reinit(guess);
+      for (const auto &cell :
+           discretization->dof_handler.active_cell_iterators())
+        {
+          const typename DoFHandler<dim>::active_cell_iterator old_cell(
+            mesh.get(), cell->level(), cell->index(), &old->dof_handler);
+          for (const unsigned int v : cell->vertex_indices())
+            for (unsigned int c = 0; c < dim; ++c)
+              {
+                guess(cell->vertex_dof_index(v, c)) =
+                  u(old_cell->vertex_dof_index(v, c));
+                guess_tractions(cell->vertex_dof_index(v, c)) =
+                  t(old_cell->vertex_dof_index(v, c));
+              }
+        }
+      return true;
+    }
+
+    const Parameters                                           parameters;
+    const Scene<dim>                                           scene;
+    std::unique_ptr<parallel::distributed::Triangulation<dim>> mesh;
+    std::unique_ptr<Discretization<dim>>                       discretization;
+    unsigned int                                               level = 0;
+
+    VectorType   guess, guess_tractions;
+    VectorType   displacement, tractions;
+    ContactState state = ContactState(0, false);
+    SolverReport report;
+
+  private:
+    void
+    discretize()
+    {
+      discretization = std::make_unique<Discretization<dim>>(scene, *mesh);
+    }
+
+    void
+    mark()
+    {
+      const Discretization<dim> &d = *discretization;
+      EstimatorProblem<dim>      problem;
+      problem.lambda               = scene.material().lambda();
+      problem.mu                   = scene.material().mu();
+      problem.body_force           = scene.body_force().get();
+      problem.contact_boundary     = scene.contact_boundary_id();
+      problem.friction_coefficient = scene.friction_coefficient();
+      for (const auto &condition : scene.traction_conditions())
+        problem.tractions[condition.boundary_id] = condition.traction.get();
+      for (const auto &condition : scene.dirichlet_conditions())
+        problem.dirichlet[condition.boundary_id] = condition.components;
+
+      VectorType normal(d.constraints->partitioner()), gap(normal);
+      for (const ContactNode<dim> &node : *d.contact)
+        for (unsigned int c = 0; c < dim; ++c)
+          {
+            normal.local_element(dim * node.node + c) = node.normal()[c];
+            gap.local_element(dim * node.node + c) =
+              node.gap * node.normal()[c];
+          }
+      for (VectorType *vector : {&normal, &gap})
+        {
+          d.hanging.distribute(*vector);
+          vector->update_ghost_values();
+        }
+      EstimatorContact contact;
+      contact.traction   = &tractions;
+      contact.normal     = &normal;
+      contact.gap_vector = &gap;
+      mark_by_maximum(
+        *mesh,
+        estimate_error(d.mapping, d.dof_handler, problem, displacement, contact)
+          .cell_errors,
+        parameters.refinement.marking);
+
+      if (parameters.refinement.contact_zone)
+        {
+          std::vector<bool> touches(d.constraints->n_nodes(), false);
+          for (unsigned int p = 0; p < d.contact->size(); ++p)
+            touches[(*d.contact)[p].node] = state.in_contact(p);
+          for (const auto &cell : d.dof_handler.active_cell_iterators())
+            if (cell->at_boundary())
+              for (const unsigned int v : cell->vertex_indices())
+                if (touches[d.constraints->node_of_dof(
+                      cell->vertex_dof_index(v, 0))])
+                  cell->set_refine_flag();
+        }
+    }
+  };
+
+
+
+  /** The points of all nodes, by node number. */
+  template <int dim>
+  std::vector<Point<dim>>
+  node_points(const Discretization<dim> &d)
+  {
+    std::vector<Point<dim>> points(d.constraints->n_nodes());
+    for (const auto &cell : d.dof_handler.active_cell_iterators())
+      for (const unsigned int v : cell->vertex_indices())
+        points[d.constraints->node_of_dof(cell->vertex_dof_index(v, 0))] =
+          cell->vertex(v);
+    return points;
+  }
+} // namespace Tests
+
+#endif
