@@ -1,0 +1,221 @@
+#!/bin/sh
+# The step program on input that is wrong, or too much for it: each case ends
+# with a status other than 0 and one sentence, and leaves no file behind.
+#
+# Usage: bad_input.sh PROGRAM SCENES [MPIEXEC NUMPROC_FLAG]
+program=$1
+scenes=$2
+mpiexec=$3
+numproc_flag=$4
+
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+
+# Open MPI: under root, with more processes than cores, and without a daemon
+# for a single process, which would take time and write messages of its own.
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+export OMPI_MCA_rmaps_base_oversubscribe=1
+export OMPI_MCA_ess_singleton_isolated=1
+
+# verdict NAME PROBLEM: an empty problem is none.
+verdict()
+{
+  if [ -z "$2" ]; then
+    echo "ok      $1"
+  else
+    echo "FAILED  $1:$2"
+    echo "  standard output:"
+    sed 's/^/    /' stdout
+    echo "  standard error:"
+    sed 's/^/    /' stderr
+    failures=$((failures + 1))
+  fi
+}
+
+# run SCENE OVERRIDES...: with a fresh output directory.
+run()
+{
+  rm -rf results
+  scene=$1
+  shift
+  "$program" "$scene" Output/Directory=results "$@" >stdout 2>stderr
+  status=$?
+}
+
+# expect_sentence NAME PATTERN: what a run with bad input must have done.
+expect_sentence()
+{
+  problem=
+  [ $status -eq 2 ] || problem="$problem status $status"
+  [ "$(wc -l <stderr)" -eq 1 ] || problem="$problem not one line"
+  grep -q '^step-friction-2d: .*[.?]$' stderr || problem="$problem no sentence"
+  grep -q -e "$2" stderr || problem="$problem '$2' is not named"
+  [ -z "$(find results -type f 2>/dev/null)" ] || problem="$problem left files"
+  verdict "$1" "$problem"
+}
+
+# bad NAME PATTERN ARGUMENTS...
+bad()
+{
+  name=$1
+  pattern=$2
+  shift 2
+  run "$@"
+  [ -s stdout ] && echo "(something on standard output)" >>stderr
+  expect_sentence "$name" "$pattern"
+}
+
+block=$scenes/block.prm
+
+bad 'unknown entry in an override' \
+  "did you mean 'Contact/Friction coefficient'" \
+  "$block" 'Contact/Friktion coefficient=0.4'
+
+sed 's/Poisson ratio/Poison ratio/' "$block" >unknown.prm
+bad 'unknown entry in a scene file' \
+  "unknown.prm:[0-9]*: .*did you mean 'Material/Poisson ratio'" unknown.prm
+
+sed 's/subsection Contact/subsection Contakt/' "$block" >unknown.prm
+bad 'unknown section in a scene file' "did you mean 'Contact'" unknown.prm
+
+bad 'not of the form Section/Entry=value' 'Section/Entry=value' "$block" levels
+bad 'no number' 'give a number' "$block" 'Contact/Friction coefficient=much'
+bad 'infinite number' 'give a number' "$block" "Material/Young's modulus=inf"
+
+bad 'E = 0' 'must be positive' "$block" "Material/Young's modulus=0"
+bad 'E < 0' 'must be positive' "$block" "Material/Young's modulus=-1"
+bad 'nu = 1/2' 'strictly between' "$block" 'Material/Poisson ratio=0.5'
+bad 'nu = -1' 'strictly between' "$block" 'Material/Poisson ratio=-1'
+bad 'F < 0' 'must not be negative' "$block" 'Contact/Friction coefficient=-0.1'
+
+bad 'missing scene' 'missing.prm' missing.prm
+mkdir folder.prm
+bad 'folder in place of a scene' 'folder.prm' folder.prm
+
+bad 'missing mesh' 'missing.msh' "$block" 'Scene/Geometry=mesh file' \
+  "Scene/Mesh file=$work/missing.msh"
+echo 'This is no mesh.' >text.msh
+bad 'mesh file that is none' 'text.msh' "$block" 'Scene/Geometry=mesh file' \
+  "Scene/Mesh file=$work/text.msh"
+
+bad 'contact boundary that does not exist' \
+  'boundary id 7, but the mesh has only 0, 1, 2, 3' \
+  "$block" 'Contact/Boundary id=7'
+bad 'displacement on a boundary that does not exist' 'boundary id 7' \
+  "$block" 'Boundary conditions/Displacement=3: 0.02, -0.02; 7: 0, 0'
+bad 'traction on a boundary that does not exist' 'boundary id 7' \
+  "$block" 'Boundary conditions/Traction=7: 0, 0'
+
+bad 'prescribed displacement into the obstacle' 'into the obstacle' \
+  "$block" 'Boundary conditions/Displacement=3: 0.02, -0.02; 0: 0.02, -0.02'
+bad 'prescribed displacement that competes with contact' 'competes' \
+  "$block" 'Boundary conditions/Displacement=3: 0.02, -0.02; 0: free, 0'
+
+bad 'nothing prescribed' 'rigid' "$block" 'Boundary conditions/Displacement='
+bad 'nothing prescribed vertically' 'y direction' \
+  "$block" 'Boundary conditions/Displacement=3: 0.02, free'
+bad 'nothing prescribed horizontally' 'x direction' \
+  "$block" 'Boundary conditions/Displacement=3: free, -0.02'
+
+# Permissions do not stop root, but nobody can create a folder below a file.
+echo 'a file' >file
+"$program" "$block" Output/Directory=file/results >stdout 2>stderr
+status=$?
+expect_sentence 'output directory that cannot be created' 'file/results'
+bad 'no output directory' 'name a directory' "$block" Output/Directory=
+
+# A limit on the size of files stands for a full device; with the signal
+# ignored, writing fails like on one.
+full()
+{
+  (
+    trap '' XFSZ
+    ulimit -f "$1"
+    shift
+    run "$@"
+    exit $status
+  )
+  status=$?
+}
+full 4 "$block" Refinement/Levels=0
+expect_sentence 'full device: the history' 'history.h5'
+full 100 "$block" Refinement/Levels=0 'Refinement/Initial refinements=5'
+problem=
+[ $status -eq 2 ] || problem="$problem status $status"
+grep -q '^step-friction-2d: .*cannot be written' stderr ||
+  problem="$problem no sentence"
+[ -z "$(find results -name '*part*')" ] || problem="$problem half-written files"
+verdict 'full device: the fields' "$problem"
+
+# A warning, and a solution all the same.
+run "$block" 'Contact/Friction coefficient=2' Refinement/Levels=0
+problem=
+[ $status -eq 0 ] || problem="$problem status $status"
+cat stdout stderr | grep -q "Eck's bound 0.958" || problem="$problem no warning"
+[ -s results/history.h5 ] || problem="$problem no history"
+verdict "F above Eck's bound" "$problem"
+
+run "$block" 'Contact/Friction coefficient=0.95' Refinement/Levels=0
+problem=
+[ $status -eq 0 ] || problem="$problem status $status"
+cat stdout stderr | grep -q 'Warning' && problem="$problem a warning"
+verdict "F below Eck's bound" "$problem"
+
+# No solution, and the program says so.
+run "$scenes/raous.prm" 'Solver/Maximum cycles=2'
+problem=
+[ $status -eq 1 ] || problem="$problem status $status"
+cat stdout stderr |
+  grep -q 'No convergence on level 0 within 2 cycles.*equilibrium [0-9]' ||
+  problem="$problem no certificate"
+verdict 'no convergence' "$problem"
+
+run "$scenes/raous.prm" 'Solver/Algorithm=fixed point' \
+  'Solver/Maximum outer iterations=2'
+problem=
+[ $status -eq 1 ] || problem="$problem status $status"
+cat stdout stderr | grep -q 'No convergence on level 0.*equilibrium [0-9]' ||
+  problem="$problem no certificate"
+verdict 'no convergence of the outer iteration' "$problem"
+
+# Help needs no scene; without any argument it is an error.
+"$program" --help >stdout 2>stderr
+status=$?
+problem=
+[ $status -eq 0 ] || problem="$problem status $status"
+grep -q '^Usage: ' stdout || problem="$problem no usage"
+verdict 'help' "$problem"
+
+"$program" >stdout 2>stderr
+status=$?
+problem=
+[ $status -eq 2 ] || problem="$problem status $status"
+grep -q '^Usage: ' stderr || problem="$problem no usage"
+verdict 'no argument' "$problem"
+
+# What is printed as defaults can be read back.
+"$program" --parameters >stdout 2>stderr
+status=$?
+problem=
+[ $status -eq 0 ] || problem="$problem status $status"
+grep -q 'subsection Solver' stdout || problem="$problem no parameters"
+cp stdout defaults.prm
+run defaults.prm 'Boundary conditions/Displacement=3: 0, -0.01; 2: 0, 0'
+[ $status -eq 0 ] || problem="$problem cannot be read back"
+verdict 'parameters' "$problem"
+
+if [ -n "$mpiexec" ]; then
+  rm -rf results
+  env -u OMPI_MCA_ess_singleton_isolated "$mpiexec" "$numproc_flag" 2 \
+    "$program" "$block" Output/Directory=results >stdout 2>stderr
+  status=$?
+  problem=
+  [ $status -ne 0 ] || problem="$problem status 0"
+  grep -q 'not supported yet' stderr || problem="$problem no sentence"
+  [ -e results ] && problem="$problem left something"
+  verdict 'two processes' "$problem"
+fi
+
+[ $failures -eq 0 ]
