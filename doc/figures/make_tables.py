@@ -1,0 +1,144 @@
+#!/usr/bin/env python3
+"""The tables of the documentation, from the runs that the CMake target
+`figures` does:  make_tables.py RUNS OUTPUT DOCUMENT
+
+Each goes to a text file in OUTPUT, and to the place that is marked for it in
+DOCUMENT."""
+
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from hertz import HALF_PLANE, THESIS, Run
+
+
+def show(value, text="{}"):
+    return "-" if value is None else text.format(value)
+
+
+def console(runs):
+    """What the Hertz scene prints."""
+    return (runs / "hertz" / "console.txt").read_text().rstrip()
+
+
+def table_6_1(runs):
+    """Algorithms 2 and 3 beside the thesis, level by level."""
+    jacobi, seidel = Run(runs / "fixed-point"), Run(runs / "W33-monotone")
+    rows = ["       |                    thesis, table 6.1                    |"
+            "                          here",
+            " level |    dof contact sticky outer  Jac   GS  rho_tau          |"
+            "    dof contact sticky outer  Jac   GS  increments  contraction"]
+    thesis = {row[0]: row[1:] for row in THESIS}
+    for k in jacobi.levels["level"]:
+        dof, contact, sticky, outer, jac, gs, rho = thesis.get(k, [None] * 7)
+        rows.append(f" {k:5d} | {show(dof):>6} {show(contact):>7} "
+                    f"{show(sticky):>6} {show(outer):>5} {show(jac):>4} "
+                    f"{show(gs):>4}  {show(rho, '{:.1e}'):<17}|")
+        level = {name: values[k] for name, values in jacobi.levels.items()}
+        rates = ["{:.1e}".format(level[name]) if level["outer_iterations"] > 2
+                 else "-" for name in ("rho_tau", "rho_tau_contraction")]
+        rows[-1] += (f" {level['dofs']:6d} {level['contact_nodes']:7d} "
+                     f"{level['sticky_nodes']:6d} "
+                     f"{level['outer_iterations']:5d} {level['cycles']:4d} "
+                     f"{seidel.levels['cycles'][k]:4d}  "
+                     f"{rates[0]:>10}  {rates[1]:>11}")
+    return "\n".join(rows)
+
+
+def cycles(runs):
+    """Cycles per level of Algorithm 3, by coarse correction."""
+    columns = [("default", "hertz"), ("V33-trunc", "V33-truncated"),
+               ("W33-trunc", "W33-truncated"), ("V33-mono", "V33-monotone"),
+               ("W33-mono", "W33-monotone"), ("F=0", "F-0"), ("F=0.05", "F-0.05"),
+               ("F=1", "F-1")]
+    histories = [Run(runs / directory) for _, directory in columns]
+    rows = [" level     dofs " + "".join(f"{name:>10}" for name, _ in columns)]
+    for k in histories[0].levels["level"]:
+        rows.append(f" {k:5d} {histories[0].levels['dofs'][k]:8d} " +
+                    "".join(f"{run.levels['cycles'][k]:10d}"
+                            for run in histories))
+    return "\n".join(rows)
+
+
+def comparison(runs):
+    """Stick ratio, half-width and largest pressure beside the half-plane."""
+    rows = ["   F   run             dofs  contact sticky |     c/a   a/a_H "
+            " p0/p_H | half-plane:   c/a   a/a_H  p0/p_H"]
+    for friction, reference in HALF_PLANE.items():
+        name = f"F-{friction:g}"
+        for label, directory in (("scene", "hertz" if friction == 0.4 else name),
+                                 ("quarter depth", "quarter-" + name)):
+            run = Run(runs / directory)
+            found = run.factors()
+            level = {name: values[-1] for name, values in run.levels.items()}
+            rows.append(
+                f" {friction:4.2f}  {label:13}{level['dofs']:8d} "
+                f"{level['contact_nodes']:8d} {level['sticky_nodes']:6d} | "
+                "{:7.5f}  {:6.4f}  {:6.4f} |           ".format(*found) +
+                "{:7.5f}  {:6.4f}  {:6.4f}".format(*reference))
+    run = Run(runs / "obstacle-normal")
+    level = {name: values[-1] for name, values in run.levels.items()}
+    rows.append(f" 0.00  normal of obst. {level['dofs']:6d}"
+                f" {level['contact_nodes']:7d} {level['sticky_nodes']:6d} | "
+                "{:7.5f}  {:6.4f}  {:6.4f} |".format(*run.factors()))
+    return "\n".join(rows)
+
+
+def checks(runs):
+    """Single numbers that the text quotes."""
+    rows = []
+    jacobi, seidel = Run(runs / "fixed-point"), Run(runs / "W33-monotone")
+    for name in ("force", "displacement"):
+        difference = max(
+            np.abs(jacobi.contact[k][name] - seidel.contact[k][name]).max() /
+            np.abs(seidel.contact[k][name]).max() for k in seidel.contact)
+        rows.append(f" Algorithms 2 and 3, largest difference of a contact "
+                    f"{name}, of the largest: {difference:.0e}")
+    for friction, directory in ((0.05, "F-0.05"), (0.4, "hertz"), (1.0, "F-1")):
+        run = Run(runs / directory)
+        x, pressure, shear, state = run.stresses()
+        slides = state == 1
+        gap = np.abs(np.abs(shear) - friction * pressure)[slides].max()
+        a = run.levels["contact_half_width"][-1]
+        middle = (np.abs(x) < 0.4 * a) & (np.abs(x) > 0.05 * a)
+        fit = np.polyfit((x[middle] / a)**2, pressure[middle], 4)
+        ripple = pressure[middle] / np.polyval(fit, (x[middle] / a)**2) - 1
+        rows.append(f" F={friction:<4g} largest | |sigma_T| - F |sigma_n| | at a "
+                    f"sliding node, of the largest pressure: "
+                    f"{gap / pressure.max():.0e}; ripple of the pressure, "
+                    f"|x| < 0.4 a: {ripple.std():.1e} rms, "
+                    f"{np.abs(ripple).max():.1e} largest")
+    for name, directory in (("true", "hertz"), ("false", "estimator-only")):
+        level = {key: values[-1]
+                 for key, values in Run(runs / directory).levels.items()}
+        rows.append(f" Contact zone = {name}: {level['dofs']} dofs, "
+                    f"{level['contact_nodes']} contact, {level['sticky_nodes']} "
+                    f"sticky, energy {level['energy']:.5e}")
+    worst = max(Run(path.parent).levels["certificate"].max()
+                for path in runs.glob("*/history.h5"))
+    rows.append(f" largest certificate on any level of any run here: {worst:.0e}")
+    return "\n".join(rows)
+
+
+def main():
+    runs, output, document = map(Path, sys.argv[1:4])
+    text = document.read_text()
+    for name, make in (("console", console), ("table-6.1", table_6_1),
+                       ("cycles", cycles), ("half-plane", comparison),
+                       ("checks", checks)):
+        table = make(runs)
+        (output / f"{name}.txt").write_text(table + "\n")
+        print(table + "\n")
+        text, n = re.subn(
+            rf"(<!-- {re.escape(name)}\.txt -->\n@code\{{\.txt\}}\n).*?(@endcode)",
+            lambda match: match.group(1) + table + "\n" + match.group(2),
+            text, flags=re.S)
+        if n > 1:
+            sys.exit(f"{document}: more than one place for {name}.txt")
+    document.write_text(text)
+
+
+if __name__ == "__main__":
+    main()
