@@ -39,6 +39,7 @@
 #include <common/estimate/residual_estimator.h>
 #include <common/multigrid/leaf_matrix.h>
 #include <common/multigrid/level_hierarchy.h>
+#include <common/multigrid/node_numbering.h>
 #include <common/output/console.h>
 #include <common/output/fields.h>
 #include <common/output/history.h>
@@ -192,13 +193,16 @@ namespace StepFriction2d
   // mesh, <code>distribute_mg_dofs</code> those of each level. With
   // <code>FESystem(FE_Q(1), dim)</code> the $d$ degrees of freedom of a vertex
   // get consecutive numbers in either case, and that is all we need to speak of
-  // nodes.
+  // nodes. <code>renumber_nodes</code> then makes nodes that are neighbours
+  // neighbours in memory, too: it does not change the method, but lets its
+  // relaxation sweeps run at the speed of the cache.
   template <int dim>
   void
   ContactProblem<dim>::setup_system()
   {
     dof_handler.distribute_dofs(fe);
     dof_handler.distribute_mg_dofs();
+    renumber_nodes(dof_handler);
 
     const IndexSet &owned = dof_handler.locally_owned_dofs();
     IndexSet        relevant;

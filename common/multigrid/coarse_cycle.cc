@@ -48,6 +48,9 @@ namespace Friction
       rhs[k].reinit(dof_handler.locally_owned_mg_dofs(k),
                     Compatibility::mpi_communicator(dof_handler));
     correction = defect = work = rhs;
+    for (unsigned int k = 0; k < n; ++k)
+      schedules.emplace_back(matrices.matrix(k),
+                             hierarchy.level(k).relaxed_nodes());
     start.resize(n);
     for (unsigned int k = 1; k < n; ++k)
       start[k] = rhs[k - 1];
@@ -167,26 +170,29 @@ namespace Friction
         return;
       }
 
-    relax(k, false);
-
     const NodeWeights &parents = hierarchy.level(k).parents();
     VectorType        &c       = correction[k];
     VectorType        &coarse  = correction[k - 1];
-
-    // Defect of everything but the part inherited from below.
-    VectorType &own    = work[k];
-    VectorType &before = start[k];
-    own                = c;
-    before             = coarse;
-    if (cycle_parameter > 1)
-      for (unsigned int node = 0; node < hierarchy.level(k).n_nodes(); ++node)
-        {
-          double inherited[dim] = {};
-          add_prolongated<dim>(parents, node, coarse.begin(), inherited);
-          for (unsigned int d = 0; d < dim; ++d)
-            own.local_element(dim * node + d) -= inherited[d];
-        }
-    matrices.matrix(k).residual(defect[k].begin(), rhs[k].begin(), own.begin());
+    VectorType        &before  = start[k];
+    before                     = coarse;
+    if (cycle_parameter == 1)
+      relax(k, false, defect[k].begin());
+    else
+      {
+        // Defect of everything but the part inherited from below.
+        relax(k, false);
+        VectorType &own = work[k];
+        own             = c;
+        for (unsigned int node = 0; node < hierarchy.level(k).n_nodes(); ++node)
+          {
+            double inherited[dim] = {};
+            add_prolongated<dim>(parents, node, coarse.begin(), inherited);
+            for (unsigned int d = 0; d < dim; ++d)
+              own.local_element(dim * node + d) -= inherited[d];
+          }
+        matrices.matrix(k).residual(
+          defect[k].begin(), rhs[k].begin(), own.begin());
+      }
     restrict_residual(k - 1, defect[k]);
     if (bounded)
       restrict_bounds(k - 1);
@@ -206,18 +212,27 @@ namespace Friction
 
   template <int dim>
   void
-  CoarseCycle<dim>::relax(const unsigned int k, const bool backwards)
+  CoarseCycle<dim>::relax(const unsigned int k,
+                          const bool         backwards,
+                          double            *defect_after)
   {
-    for (unsigned int step = 0; step < smoothing_steps; ++step)
-      if (bounded)
-        relax_within_bounds(k, hierarchy.level(k).relaxed_nodes(), backwards);
-      else
-        gauss_seidel_sweep<dim>(matrices.matrix(k),
-                                matrices.inverse_diagonals(k),
-                                hierarchy.level(k).relaxed_nodes(),
-                                rhs[k].begin(),
-                                correction[k].begin(),
-                                backwards);
+    if (!bounded)
+      gauss_seidel_sweeps<dim>(schedules[k],
+                               matrices.matrix(k),
+                               matrices.inverse_diagonals(k),
+                               rhs[k].begin(),
+                               correction[k].begin(),
+                               backwards,
+                               smoothing_steps,
+                               defect_after);
+    else
+      {
+        for (unsigned int step = 0; step < smoothing_steps; ++step)
+          relax_within_bounds(k, hierarchy.level(k).relaxed_nodes(), backwards);
+        if (defect_after != nullptr)
+          matrices.matrix(k).residual(
+            defect_after, rhs[k].begin(), correction[k].begin());
+      }
   }
 
 

@@ -3,6 +3,7 @@
 
 #include <common/multigrid/coarsest_solver.h>
 #include <common/multigrid/level_matrices.h>
+#include <common/multigrid/sweep_schedule.h>
 #include <common/solvers/settings.h>
 
 #include <deal.II/dofs/dof_handler.h>
@@ -82,6 +83,7 @@ namespace Friction
 
     LevelMatrices<dim>                   matrices;
     std::unique_ptr<CoarsestSolver<dim>> coarsest;
+    std::vector<SweepSchedule<dim>>      schedules;
     Truncation<dim>                      truncation;
 
     // Per level: right hand side, correction, what the next coarser level had
@@ -102,7 +104,9 @@ namespace Friction
 
     void visit(const unsigned int level);
 
-    void relax(const unsigned int level, const bool backwards);
+    void relax(const unsigned int level,
+               const bool         backwards,
+               double            *defect_after = nullptr);
 
     void relax_within_bounds(const unsigned int level,
                              const NodeRanges  &nodes,

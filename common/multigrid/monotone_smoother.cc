@@ -15,6 +15,7 @@ namespace Friction
     , friction_coefficient(friction_coefficient)
     , inverses(constraints.n_owned_nodes(), zero_block<dim>())
   {
+    NodeRanges        ordinary;
     std::vector<char> is_ordinary(constraints.n_owned_nodes());
     for (unsigned int node = 0; node < is_ordinary.size(); ++node)
       is_ordinary[node] = !constraints.is_fixed(node);
@@ -57,35 +58,74 @@ namespace Friction
           inverses[node] =
             pseudo_inverse<dim>(block, 1e-10 * trace<dim>(block.data()));
         }
+
+    schedule = SweepSchedule<dim>(matrix, ordinary);
+    first_contact.assign(schedule.n_chunks() + 1, 0);
+    for (const ContactNode<dim> &p : contact)
+      ++first_contact[schedule.chunk_of(p.node) + 1];
+    for (unsigned int c = 0; c < schedule.n_chunks(); ++c)
+      first_contact[c + 1] += first_contact[c];
+    by_chunk.resize(contact.size());
+    std::vector<unsigned int> next(first_contact.begin(),
+                                   first_contact.end() - 1);
+    for (unsigned int p = 0; p < contact.size(); ++p)
+      by_chunk[next[schedule.chunk_of(contact[p].node)]++] = p;
   }
 
 
 
   template <int dim>
   void
-  MonotoneSmoother<dim>::sweep(VectorType       &u,
-                               const VectorType &f,
-                               ContactState     &state,
-                               const bool        update_normal_forces,
-                               const bool        backwards) const
+  MonotoneSmoother<dim>::sweeps(VectorType       &u,
+                                const VectorType &f,
+                                ContactState     &state,
+                                const Sweeps     &what,
+                                VectorType       *residual) const
   {
-    const auto relax_ordinary_nodes = [&]() {
-      gauss_seidel_sweep<dim>(
-        matrix, inverses, ordinary, f.begin(), u.begin(), backwards);
+    const auto relax_ordinary_nodes = [&](const unsigned int chunk) {
+      const NodeRanges &nodes = schedule.nodes(chunk);
+      for (unsigned int i = 0; i < nodes.size(); ++i)
+        relax_nodes<dim>(matrix,
+                         inverses,
+                         nodes[what.backwards ? nodes.size() - 1 - i : i],
+                         f.begin(),
+                         u.begin(),
+                         what.backwards);
+    };
+    const auto relax_contact_nodes = [&](const unsigned int chunk,
+                                         const bool         update) {
+      const unsigned int begin = first_contact[chunk],
+                         end   = first_contact[chunk + 1];
+      for (unsigned int i = begin; i < end; ++i)
+        relax_contact_node(by_chunk[what.backwards ? begin + end - 1 - i : i],
+                           u,
+                           f,
+                           state,
+                           update);
     };
 
-    if (!backwards)
-      {
-        relax_ordinary_nodes();
-        for (unsigned int p = 0; p < contact.size(); ++p)
-          relax_contact_node(p, u, f, state, update_normal_forces);
-      }
-    else
-      {
-        for (unsigned int p = contact.size(); p-- > 0;)
-          relax_contact_node(p, u, f, state, update_normal_forces);
-        relax_ordinary_nodes();
-      }
+    schedule.run(what.n + (residual != nullptr ? 1 : 0),
+                 what.backwards,
+                 [&](const unsigned int stage, const unsigned int chunk) {
+                   const bool update = what.update_normal_forces &&
+                     (stage > 0 || !what.trust_first_normal_forces);
+                   if (stage == what.n)
+                     matrix.residual(residual->begin(),
+                                     f.begin(),
+                                     u.begin(),
+                                     schedule.chunk(chunk).first,
+                                     schedule.chunk(chunk).second);
+                   else if (what.backwards)
+                     {
+                       relax_contact_nodes(chunk, update);
+                       relax_ordinary_nodes(chunk);
+                     }
+                   else
+                     {
+                       relax_ordinary_nodes(chunk);
+                       relax_contact_nodes(chunk, update);
+                     }
+                 });
   }
 
 

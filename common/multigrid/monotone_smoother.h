@@ -5,7 +5,7 @@
 #include <common/contact/contact_state.h>
 #include <common/contact/local_problem.h>
 #include <common/contact/nodal_constraints.h>
-#include <common/multigrid/node_block_matrix.h>
+#include <common/multigrid/sweep_schedule.h>
 
 #include <vector>
 
@@ -21,9 +21,10 @@ namespace Friction
    * iterate is admissible; that is what makes the method monotone, and globally
    * convergent whatever the coarse levels contribute.
    *
-   * Ordinary nodes come first in a forward sweep, contact nodes last, so that
-   * the long loop over the ordinary ones needs no test; a backward sweep is the
-   * exact reverse.
+   * Nodes are taken by ascending number, in chunks of which the ordinary nodes
+   * come first and the contact nodes last, so that the long loop over the
+   * ordinary ones needs no test; a backward sweep is the exact reverse. Several
+   * sweeps follow each other through the cache, see SweepSchedule.
    */
   template <int dim>
   class MonotoneSmoother
@@ -39,35 +40,48 @@ namespace Friction
                      const ContactBoundary<dim>  &contact,
                      const double                 friction_coefficient);
 
+    /** What a number of sweeps is to do; see sweeps(). */
+    struct Sweeps
+    {
+      unsigned int n         = 1;
+      bool         backwards = false;
+
+      /// Take the normal force of each node from the intermediate iterate just
+      /// before the node is relaxed: the local problems (6.19) of Algorithm 3.
+      /// Otherwise the normal forces stay as they are, as in (6.13).
+      bool update_normal_forces = false;
+
+      /// With updates: let the first sweep work with the given normal forces.
+      bool trust_first_normal_forces = false;
+    };
+
     /**
-     * One sweep.
+     * Sweeps over all nodes that can move.
      * @param u      displacement at the leaf nodes; prescribed components must
      *               have their values, which are not changed.
      * @param f      nodal forces.
-     * @param state  contact and stick flags, set by the sweep, and the normal
+     * @param state  contact and stick flags, set by the sweeps, and the normal
      *               forces in the friction bounds.
-     * @param update_normal_forces  take the normal force of each node from the
-     *               intermediate iterate just before the node is relaxed: the
-     *               local problems (6.19) of Algorithm 3. Otherwise the normal
-     *               forces stay as they are, as in (6.13).
+     * @param residual  if not null, on return f - A u at all nodes.
      */
-    void sweep(VectorType       &u,
-               const VectorType &f,
-               ContactState     &state,
-               const bool        update_normal_forces,
-               const bool        backwards) const;
+    void sweeps(VectorType       &u,
+                const VectorType &f,
+                ContactState     &state,
+                const Sweeps     &what,
+                VectorType       *residual = nullptr) const;
 
-    /** The ordinary nodes, for measurements. */
-    const NodeRanges &
-    ordinary_nodes() const
+    /** A single sweep. */
+    void
+    sweep(VectorType       &u,
+          const VectorType &f,
+          ContactState     &state,
+          const bool        update_normal_forces,
+          const bool        backwards) const
     {
-      return ordinary;
-    }
-
-    const std::vector<NodeBlock<dim>> &
-    inverse_diagonals() const
-    {
-      return inverses;
+      Sweeps what;
+      what.backwards            = backwards;
+      what.update_normal_forces = update_normal_forces;
+      sweeps(u, f, state, what);
     }
 
     std::size_t
@@ -80,9 +94,13 @@ namespace Friction
     const NodeBlockMatrix<dim>    &matrix;
     const ContactBoundary<dim>    &contact;
     const double                   friction_coefficient;
-    NodeRanges                     ordinary;
     std::vector<NodeBlock<dim>>    inverses;
     std::vector<LocalProblem<dim>> local_problems;
+    SweepSchedule<dim>             schedule;
+
+    // Contact nodes by chunk: those of chunk c are first_contact[c],... in the
+    // permutation by_chunk.
+    std::vector<unsigned int> first_contact, by_chunk;
 
     void relax_contact_node(const unsigned int p,
                             VectorType        &u,

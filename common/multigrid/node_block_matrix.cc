@@ -50,7 +50,20 @@ namespace Friction
                                  const double *b,
                                  const double *x) const
   {
-    for (unsigned int i = 0; i < n_rows(); ++i)
+    residual(r, b, x, 0, n_rows());
+  }
+
+
+
+  template <int dim>
+  void
+  NodeBlockMatrix<dim>::residual(double            *r,
+                                 const double      *b,
+                                 const double      *x,
+                                 const unsigned int begin,
+                                 const unsigned int end) const
+  {
+    for (unsigned int i = begin; i < end; ++i)
       {
         const NodeValue<dim> value = row_times(i, x);
         for (int d = 0; d < dim; ++d)
@@ -73,12 +86,12 @@ namespace Friction
 
   template <int dim>
   void
-  gauss_seidel_sweep(const NodeBlockMatrix<dim>        &A,
-                     const std::vector<NodeBlock<dim>> &inverse_diagonal,
-                     const NodeRanges                  &nodes,
-                     const double                      *b,
-                     double                            *x,
-                     const bool                         backwards)
+  relax_nodes(const NodeBlockMatrix<dim>                  &A,
+              const std::vector<NodeBlock<dim>>           &inverse_diagonal,
+              const std::pair<unsigned int, unsigned int> &nodes,
+              const double                                *b,
+              double                                      *x,
+              const bool                                   backwards)
   {
     const auto relax = [&](const unsigned int i) {
       const NodeValue<dim> product = A.row_times(i, x);
@@ -92,13 +105,11 @@ namespace Friction
     };
 
     if (!backwards)
-      for (const auto &range : nodes)
-        for (unsigned int i = range.first; i < range.second; ++i)
-          relax(i);
+      for (unsigned int i = nodes.first; i < nodes.second; ++i)
+        relax(i);
     else
-      for (auto range = nodes.rbegin(); range != nodes.rend(); ++range)
-        for (unsigned int i = range->second; i-- > range->first;)
-          relax(i);
+      for (unsigned int i = nodes.second; i-- > nodes.first;)
+        relax(i);
   }
 
 
@@ -106,16 +117,16 @@ namespace Friction
   template class NodeBlockMatrix<2>;
   template class NodeBlockMatrix<3>;
 
-  template void gauss_seidel_sweep<2>(const NodeBlockMatrix<2> &,
-                                      const std::vector<NodeBlock<2>> &,
-                                      const NodeRanges &,
-                                      const double *,
-                                      double *,
-                                      const bool);
-  template void gauss_seidel_sweep<3>(const NodeBlockMatrix<3> &,
-                                      const std::vector<NodeBlock<3>> &,
-                                      const NodeRanges &,
-                                      const double *,
-                                      double *,
-                                      const bool);
+  template void relax_nodes(const NodeBlockMatrix<2> &,
+                            const std::vector<NodeBlock<2>> &,
+                            const std::pair<unsigned int, unsigned int> &,
+                            const double *,
+                            double *,
+                            const bool);
+  template void relax_nodes(const NodeBlockMatrix<3> &,
+                            const std::vector<NodeBlock<3>> &,
+                            const std::pair<unsigned int, unsigned int> &,
+                            const double *,
+                            double *,
+                            const bool);
 } // namespace Friction

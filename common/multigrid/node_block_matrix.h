@@ -92,6 +92,13 @@ namespace Friction
     /** r = b - A x. */
     void residual(double *r, const double *b, const double *x) const;
 
+    /** The same for the rows begin,...,end-1 only. */
+    void residual(double            *r,
+                  const double      *b,
+                  const double      *x,
+                  const unsigned int begin,
+                  const unsigned int end) const;
+
     /** Memory in bytes. */
     std::size_t memory_consumption() const;
 
@@ -110,19 +117,19 @@ namespace Friction
   using NodeRanges = std::vector<std::pair<unsigned int, unsigned int>>;
 
   /**
-   * One block Gauss-Seidel sweep for A x = b over the given nodes, in ascending
+   * Block Gauss-Seidel for A x = b over the nodes of a range, in ascending
    * order or, backwards, in descending order.
    * @param inverse_diagonal  one block per row: the (pseudo-)inverse of the
    *                          diagonal block; a zero block leaves its node
    * alone.
    */
   template <int dim>
-  void gauss_seidel_sweep(const NodeBlockMatrix<dim>        &A,
-                          const std::vector<NodeBlock<dim>> &inverse_diagonal,
-                          const NodeRanges                  &nodes,
-                          const double                      *b,
-                          double                            *x,
-                          const bool                         backwards);
+  void relax_nodes(const NodeBlockMatrix<dim>        &A,
+                   const std::vector<NodeBlock<dim>> &inverse_diagonal,
+                   const std::pair<unsigned int, unsigned int> &nodes,
+                   const double                                *b,
+                   double                                      *x,
+                   const bool                                   backwards);
 
 
 

@@ -115,16 +115,14 @@ namespace Friction
       {
         {
           const Stopwatch sweeps(costs.leading_sweeps);
-          for (unsigned int step = 0; step < settings.smoothing_steps; ++step)
-            // The very first sweep works with the normal forces of the initial
-            // guess, which know better than its residual does.
-            smoother.sweep(u,
-                           problem.forces,
-                           state,
-                           update && (cycle > 0 || step > 0),
-                           false);
-          problem.matrix.residual(
-            residual.begin(), problem.forces.begin(), u.begin());
+
+          // The very first sweep works with the normal forces of the initial
+          // guess, which know better than its residual does.
+          typename MonotoneSmoother<dim>::Sweeps what;
+          what.n                         = settings.smoothing_steps;
+          what.update_normal_forces      = update;
+          what.trust_first_normal_forces = (cycle == 0);
+          smoother.sweeps(u, problem.forces, state, what, &residual);
           costs.n_leading_sweeps += settings.smoothing_steps + 1;
         }
         if (update)
@@ -165,9 +163,12 @@ namespace Friction
         info.damping   = correct(u, residual, state, recombination, info);
         result.cycles.push_back(info);
 
-        const Stopwatch sweeps(costs.leading_sweeps);
-        for (unsigned int step = 0; step < settings.smoothing_steps; ++step)
-          smoother.sweep(u, problem.forces, state, update, true);
+        const Stopwatch                        sweeps(costs.leading_sweeps);
+        typename MonotoneSmoother<dim>::Sweeps what;
+        what.n                    = settings.smoothing_steps;
+        what.backwards            = true;
+        what.update_normal_forces = update;
+        smoother.sweeps(u, problem.forces, state, what);
         costs.n_leading_sweeps += settings.smoothing_steps;
       }
     return result;

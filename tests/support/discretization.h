@@ -6,6 +6,7 @@
 #include <common/contact/nodal_constraints.h>
 #include <common/multigrid/leaf_matrix.h>
 #include <common/multigrid/level_hierarchy.h>
+#include <common/multigrid/node_numbering.h>
 #include <common/scene/scene.h>
 #include <common/solvers/discrete_problem.h>
 
@@ -64,6 +65,7 @@ namespace Tests
     {
       dof_handler.distribute_dofs(fe);
       dof_handler.distribute_mg_dofs();
+      renumber_nodes(dof_handler);
       IndexSet relevant;
       DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
 

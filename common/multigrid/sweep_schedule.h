@@ -1,0 +1,137 @@
+#ifndef friction_multigrid_sweep_schedule_h
+#define friction_multigrid_sweep_schedule_h
+
+#include <common/multigrid/node_block_matrix.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * Runs several relaxation sweeps through a matrix while reading it from
+   * memory only once.
+   *
+   * A sweep does little arithmetic and waits for memory. But the second sweep
+   * may relax a node as soon as the first one is through with all neighbours of
+   * that node; it then finds everything still in the cache. The nodes are cut
+   * into chunks of consecutive numbers, and each sweep follows the one before
+   * it at the distance that the couplings demand. Each node sees exactly the
+   * values it would see if the sweeps ran one after the other, so that the
+   * result is the same to the last bit.
+   *
+   * How close a sweep can follow depends on the numbering: with one that keeps
+   * neighbours close (see renumber_nodes()) a few chunks are enough; with a bad
+   * one the sweeps simply run one after the other.
+   */
+  template <int dim>
+  class SweepSchedule
+  {
+  public:
+    SweepSchedule() = default;
+
+    /** For sweeps over @p nodes with the couplings of @p matrix, whose pattern
+     * must be symmetric. */
+    SweepSchedule(const NodeBlockMatrix<dim> &matrix,
+                  const NodeRanges           &nodes,
+                  const unsigned int          chunk_size = 128);
+
+    /**
+     * Runs @p n_stages stages, each over all chunks in ascending or descending
+     * order. A stage is a sweep, or anything else that reads only neighbours.
+     * @param work  called as work(stage, chunk).
+     */
+    template <typename Work>
+    void run(const unsigned int n_stages,
+             const bool         backwards,
+             const Work        &work) const;
+
+    unsigned int
+    n_chunks() const
+    {
+      return chunk_starts.empty() ? 0 : chunk_starts.size() - 1;
+    }
+
+    /** All nodes of a chunk, whether to be swept over or not. */
+    std::pair<unsigned int, unsigned int>
+    chunk(const unsigned int c) const
+    {
+      return {chunk_starts[c], chunk_starts[c + 1]};
+    }
+
+    /** The nodes of a chunk that are to be swept over. */
+    const NodeRanges &
+    nodes(const unsigned int c) const
+    {
+      return ranges[c];
+    }
+
+    /** Which chunk a node is in. */
+    unsigned int
+    chunk_of(const unsigned int node) const
+    {
+      return node / chunk_size;
+    }
+
+  private:
+    unsigned int              chunk_size = 1;
+    std::vector<unsigned int> chunk_starts;
+    std::vector<NodeRanges>   ranges;
+
+    // The last and the first chunk that a chunk, or one before (after) it,
+    // couples to.
+    std::vector<unsigned int> reach_up, reach_down;
+  };
+
+
+
+  /**
+   * Several Gauss-Seidel sweeps over the nodes of a schedule, and then, if
+   * @p residual is not null, the residual b - A x of all rows; see
+   * relax_nodes().
+   */
+  template <int dim>
+  void gauss_seidel_sweeps(const SweepSchedule<dim>          &schedule,
+                           const NodeBlockMatrix<dim>        &A,
+                           const std::vector<NodeBlock<dim>> &inverse_diagonal,
+                           const double                      *b,
+                           double                            *x,
+                           const bool                         backwards,
+                           const unsigned int                 n_sweeps,
+                           double *residual = nullptr);
+
+
+
+  template <int dim>
+  template <typename Work>
+  void
+  SweepSchedule<dim>::run(const unsigned int n_stages,
+                          const bool         backwards,
+                          const Work        &work) const
+  {
+    const unsigned int        n = n_chunks();
+    std::vector<unsigned int> done(n_stages, 0);
+
+    // Counted in the direction of the sweep, chunk number c is
+    const auto chunk_at = [&](const unsigned int c) {
+      return backwards ? n - 1 - c : c;
+    };
+    // and all of the stage before must be done up to and including
+    const auto needs = [&](const unsigned int c) {
+      return backwards ? n - 1 - reach_down[n - 1 - c] : reach_up[c];
+    };
+
+    while (n_stages > 0 && done.back() < n)
+      for (unsigned int stage = 0; stage < n_stages; ++stage)
+        while (done[stage] < n &&
+               (stage == 0 || needs(done[stage]) < done[stage - 1]))
+          {
+            work(stage, chunk_at(done[stage]));
+            ++done[stage];
+            if (stage == 0)
+              break;
+          }
+  }
+} // namespace Friction
+
+#endif
