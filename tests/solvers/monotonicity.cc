@@ -1,0 +1,736 @@
+// With given friction bounds (Tresca) the energy must not increase in any part
+// of the iteration, and all iterates must be admissible: on meshes with hanging
+// nodes, from random starts, for both coarse corrections and both cycles.
+
+#include <common/multigrid/coarse_cycle.h>
+#include <common/multigrid/linearization.h>
+#include <common/multigrid/monotone_smoother.h>
+#include <common/solvers/monotone_multigrid.h>
+#include <common/solvers/tresca_functional.h>
+
+#include <iostream>
+#include <random>
+
+#include "../support/check_below.h"
+#include "../support/nested_iteration.h"
+
+using namespace Tests;
+
+namespace
+{
+  // Energies are compared up to the rounding of their evaluation, a sum over
+  // all nodes.
+  constexpr double rounding = 1e-12;
+
+
+
+  /**
+   * A Tresca problem: a scene on a locally refined mesh, with normal forces
+   * like those of its Coulomb solution, but disturbed, and not zero at nodes
+   * that are open, so that all phases occur.
+   */
+  class TrescaProblem
+  {
+  public:
+    TrescaProblem(const std::string &scene_file, const unsigned int refinements)
+      : parameters(read_parameters(scene_file))
+      , scene(parameters)
+      , mesh(make_triangulation<2>())
+      , generator(17)
+    {
+      scene.make_coarse_mesh(*mesh);
+      mesh->refine_global(refinements);
+      for (unsigned int step = 0; step < 3; ++step)
+        {
+          // Towards the middle of the contact boundary, and here and there.
+          unsigned int n = 0;
+          for (const auto &cell : mesh->active_cell_iterators())
+            {
+              for (const unsigned int f : cell->face_indices())
+                if (cell->at_boundary(f) &&
+                    cell->face(f)->boundary_id() ==
+                      scene.contact_boundary_id() &&
+                    std::abs(
+                      cell->face(f)->center()[0] -
+                      (parameters.scene.geometry == GeometryKind::rectangle
+                         ? 0.4
+                         : 0.)) < 0.3 / (1 << step))
+                  cell->set_refine_flag();
+              if (++n % 23 == 5)
+                cell->set_refine_flag();
+            }
+          mesh->execute_coarsening_and_refinement();
+        }
+      discretization = std::make_unique<Discretization<2>>(scene, *mesh);
+
+      VectorType       u = discretization->admissible_start();
+      ContactState     state(discretization->contact->size(), true);
+      CoulombSolver<2> solver(discretization->dof_handler,
+                              *discretization->hierarchy,
+                              discretization->problem(),
+                              parameters.solver);
+      converged      = solver.solve(u, state).converged;
+      length         = u.linfty_norm();
+      double largest = 0;
+      for (unsigned int p = 0; p < state.size(); ++p)
+        largest = std::max(largest, state.normal_force(p));
+      for (unsigned int p = 0; p < state.size(); ++p)
+        normal_forces.push_back(state.normal_force(p) * random(0.5, 1.5) +
+                                (p % 3 == 0 ? largest * random(0, 0.02) : 0));
+    }
+
+    DiscreteProblem<2>
+    problem() const
+    {
+      DiscreteProblem<2> result = discretization->problem();
+      result.friction_law       = FrictionLaw::tresca;
+      return result;
+    }
+
+    ContactState
+    initial_state() const
+    {
+      ContactState state(discretization->contact->size(), true);
+      for (unsigned int p = 0; p < state.size(); ++p)
+        state.set_normal_force(p, normal_forces[p]);
+      return state;
+    }
+
+    double
+    random(const double low, const double high)
+    {
+      return std::uniform_real_distribution<double>(low, high)(generator);
+    }
+
+    /** Random at all components that are free, zero elsewhere. */
+    VectorType
+    random_direction()
+    {
+      const NodalConstraints<2> &constraints = *discretization->constraints;
+      VectorType                 v(constraints.partitioner());
+      for (unsigned int node = 0; node < constraints.n_owned_nodes(); ++node)
+        for (unsigned int c = 0; c < 2; ++c)
+          if (!constraints.is_hanging(node) &&
+              !constraints.is_prescribed(node, c))
+            v.local_element(2 * node + c) = random(-1, 1);
+      return v;
+    }
+
+    /** Random, but admissible; some contact nodes touch. */
+    VectorType
+    random_start()
+    {
+      VectorType u = discretization->admissible_start();
+      u.add(0.3 * length, random_direction());
+      for (const ContactNode<2> &node : *discretization->contact)
+        {
+          const double excess = normal_component(node, u) - node.gap;
+          if (excess > 0)
+            for (unsigned int d = 0; d < 2; ++d)
+              u.local_element(2 * node.node + d) -= excess * node.normal()[d];
+        }
+      return u;
+    }
+
+    VectorType
+    residual(const VectorType &u) const
+    {
+      VectorType r(u);
+      discretization->matrix.residual(
+        r.begin(), discretization->forces.begin(), u.begin());
+      return r;
+    }
+
+    VectorType
+    product(const VectorType &v) const
+    {
+      VectorType Av(v);
+      discretization->matrix.vmult(Av.begin(), v.begin());
+      return Av;
+    }
+
+    const Parameters                                         parameters;
+    const Scene<2>                                           scene;
+    std::unique_ptr<parallel::distributed::Triangulation<2>> mesh;
+    std::unique_ptr<Discretization<2>>                       discretization;
+    bool                                                     converged = false;
+    double                                                   length    = 0;
+    std::vector<double>                                      normal_forces;
+
+  private:
+    std::mt19937 generator;
+  };
+
+
+
+  // The parts of a step, one after the other.
+  void
+  part_by_part(TrescaProblem         &fixture,
+               const CoarseCorrection correction,
+               const Cycle            cycle)
+  {
+    const Discretization<2>  &d       = *fixture.discretization;
+    const DiscreteProblem<2>  problem = fixture.problem();
+    const TrescaFunctional<2> functional(problem);
+    const double              F = problem.friction_coefficient;
+    const MonotoneSmoother<2> smoother(d.matrix, *d.constraints, *d.contact, F);
+    Linearization<2>          linearization(
+      *d.constraints, *d.contact, F, TruncationVariant::phases);
+    CoarseCycle<2> coarse(
+      d.dof_handler, d.matrix, *d.hierarchy, *d.constraints, cycle, 6);
+
+    double increase_in_sweeps = 0, increase_in_correction = 0,
+           penetration = -1e300, outside_of_bounds = 0, outside_of_space = 0;
+    bool         descent = true, phases_kept = true;
+    unsigned int open_but_held = 0, sliding = 0, sticking = 0, open = 0;
+
+    for (unsigned int start = 0; start < 3; ++start)
+      {
+        VectorType   u      = fixture.random_start();
+        ContactState state  = fixture.initial_state();
+        double       energy = functional.energy(u, state);
+
+        const auto compare = [&](double &largest_increase) {
+          const double now = functional.energy(u, state);
+          largest_increase =
+            std::max(largest_increase, (now - energy) / std::abs(energy));
+          energy      = now;
+          penetration = std::max(
+            penetration, functional.largest_penetration(u) / fixture.length);
+        };
+
+        for (unsigned int step = 0; step < 8; ++step)
+          {
+            for (unsigned int sweep = 0; sweep < 3; ++sweep)
+              {
+                smoother.sweep(u, problem.forces, state, false, false);
+                compare(increase_in_sweeps);
+              }
+            for (unsigned int p = 0; p < state.size(); ++p)
+              (state.in_contact(p)
+                 ? (state.sticks(p) ? sticking : sliding)
+                 : (state.sticks(p) ? open_but_held : open))++;
+
+            linearization.update(u, state);
+            coarse.update(linearization.truncation());
+            const VectorType residual = fixture.residual(u);
+            VectorType       r(residual), v(u);
+            linearization.linearize_residual(r, u, state);
+
+            if (correction == CoarseCorrection::monotone)
+              {
+                VectorType lower(u), upper(u);
+                linearization.bounds(lower, upper, u, state);
+                coarse.apply_within_bounds(v, r, lower, upper);
+
+                // Bounds hold for components of nodes that are not truncated;
+                // a truncated one moves within its free subspace.
+                for (const ContactNode<2> &node : *d.contact)
+                  if (linearization.truncation().projector(node.node) ==
+                      identity_block<2>())
+                    for (unsigned int i = 2 * node.node; i < 2 * node.node + 2;
+                         ++i)
+                      outside_of_bounds = std::max(
+                        {outside_of_bounds,
+                         (v.local_element(i) - upper.local_element(i)) /
+                           fixture.length,
+                         (lower.local_element(i) - v.local_element(i)) /
+                           fixture.length});
+
+                // No sliding node may turn round.
+                for (unsigned int p = 0; p < state.size(); ++p)
+                  if (state.normal_force(p) > 0 && !state.sticks(p))
+                    {
+                      const double before =
+                        tangential_components<2>((*d.contact)[p], u)[0];
+                      const double after = before +
+                        tangential_components<2>((*d.contact)[p], v)[0];
+                      phases_kept = phases_kept &&
+                        (before == 0 ||
+                         after / before >= -1e-10 * fixture.length);
+                    }
+                descent = descent && r * v >= 0;
+              }
+            else
+              {
+                coarse.apply(v, r);
+                descent = descent && (r * v > 0 || r.l2_norm() == 0);
+              }
+            VectorType Tv(v);
+            linearization.truncation().apply(Tv.begin());
+            Tv -= v;
+            outside_of_space =
+              std::max(outside_of_space,
+                       Tv.linfty_norm() / std::max(v.linfty_norm(), 1e-300));
+
+            if (correction == CoarseCorrection::truncated)
+              {
+                v *= functional.minimize_along(
+                  v, u, state, residual * v, v * fixture.product(v), 2.);
+                if (functional.project(v, u) > 0)
+                  v *= functional.minimize_along(
+                    v,
+                    u,
+                    state,
+                    residual * v,
+                    v * fixture.product(v),
+                    functional.admissible_length(v, u, 2.));
+              }
+            u += v;
+            compare(increase_in_correction);
+
+            for (unsigned int sweep = 0; sweep < 3; ++sweep)
+              {
+                smoother.sweep(u, problem.forces, state, false, true);
+                compare(increase_in_sweeps);
+              }
+          }
+      }
+
+    check(open > 0 && sliding > 0 && sticking > 0 && open_but_held > 0,
+          "all phases occur");
+    check_below(increase_in_sweeps, rounding, "energy in sweeps");
+    check_below(
+      increase_in_correction, rounding, "energy in coarse corrections");
+    check_below(penetration, 1e-14, "admissible");
+    check_below(outside_of_space, 1e-12, "corrections in the free subspace");
+    check(descent, "corrections go downhill");
+    if (correction == CoarseCorrection::monotone)
+      {
+        check_below(outside_of_bounds, 1e-14, "within the bounds");
+        check(phases_kept, "no sliding node turns round");
+      }
+  }
+
+
+
+  // The iteration itself, by what it reports.
+  void
+  whole_iteration(TrescaProblem &fixture)
+  {
+    const Discretization<2>  &d       = *fixture.discretization;
+    const DiscreteProblem<2>  problem = fixture.problem();
+    const TrescaFunctional<2> functional(problem);
+
+    double     increase = 0, penetration = -1e300, difference = 0;
+    bool       converged = true;
+    VectorType solution;
+    for (unsigned int start = 0; start < 2; ++start)
+      {
+        const VectorType u_0 = fixture.random_start();
+        for (const Cycle cycle : {Cycle::V, Cycle::W})
+          for (unsigned int variant = 0; variant < 5; ++variant)
+            {
+              // The truncated correction with 0, 1, 2 recombined steps, the
+              // monotone one, and truncation of all contact nodes.
+              SolverSettings settings;
+              settings.cycle            = cycle;
+              settings.inner_tolerance  = 1e-11;
+              settings.recombined_steps = variant < 3 ? variant : 1;
+              if (variant == 3)
+                settings.coarse_correction = CoarseCorrection::monotone;
+              if (variant == 4)
+                settings.truncation = TruncationVariant::contact;
+
+              VectorType           u(u_0);
+              ContactState         state = fixture.initial_state();
+              MonotoneMultigrid<2> multigrid(
+                d.dof_handler, *d.hierarchy, problem, settings);
+              const double          first  = functional.energy(u, state);
+              const MultigridResult result = multigrid.solve(u, state, false);
+              converged                    = converged && result.converged;
+              double last                  = first;
+              for (const CycleInfo &info : result.cycles)
+                {
+                  increase =
+                    std::max(increase, (info.energy - last) / std::abs(last));
+                  last = info.energy;
+                }
+              increase =
+                std::max(increase,
+                         (functional.energy(u, state) - last) / std::abs(last));
+              penetration =
+                std::max(penetration,
+                         functional.largest_penetration(u) / fixture.length);
+              for (unsigned int p = 0; p < state.size(); ++p)
+                converged = converged &&
+                  state.normal_force(p) == fixture.normal_forces[p];
+              if (solution.size() == 0)
+                solution = u;
+              else
+                for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+                  if (!d.constraints->is_hanging(i / 2))
+                    difference = std::max(
+                      difference,
+                      std::abs(u.local_element(i) - solution.local_element(i)) /
+                        fixture.length);
+            }
+      }
+    check(converged, "all variants converge, given forces stay as they are");
+    check_below(increase, rounding, "energy from cycle to cycle");
+    check_below(penetration, 1e-14, "admissible");
+    check_below(difference, 1e-8, "one solution");
+  }
+
+
+
+  // Against brute force along random lines.
+  void
+  line_search(TrescaProblem &fixture)
+  {
+    const Discretization<2>  &d       = *fixture.discretization;
+    const DiscreteProblem<2>  problem = fixture.problem();
+    const TrescaFunctional<2> functional(problem);
+    ContactState              state = fixture.initial_state();
+
+    const unsigned int n_points = 400;
+    double             excess = 0, distance = 0;
+    unsigned int       n_zero = 0, n_inside = 0, n_largest = 0;
+    for (unsigned int line = 0; line < 30; ++line)
+      {
+        // Much more friction than usual, so that the kinks matter; on every
+        // third line some nodes are at rest.
+        for (unsigned int p = 0; p < state.size(); ++p)
+          state.set_normal_force(
+            p, fixture.normal_forces[p] * (line % 2 == 0 ? 1. : 1e3));
+        VectorType u = fixture.random_start();
+        if (line % 3 == 0)
+          for (unsigned int p = 0; p < state.size(); p += 2)
+            {
+              const ContactNode<2> &node = (*d.contact)[p];
+              const double          u_T  = tangential_components<2>(node, u)[0];
+              for (unsigned int c = 0; c < 2; ++c)
+                u.local_element(2 * node.node + c) -= u_T * node.frame[1][c];
+            }
+        VectorType       v = fixture.random_direction();
+        const VectorType r = fixture.residual(u);
+        if (line % 7 != 0)
+          {
+            // Downhill, with a minimum of the quadratic part at 0.1,...,2.5.
+            if (r * v < 0)
+              v *= -1;
+            v *= (r * v) / (v * fixture.product(v)) / fixture.random(0.1, 2.5);
+          }
+        const double largest = 2.;
+        const double length  = functional.minimize_along(
+          v, u, state, r * v, v * fixture.product(v), largest);
+        n_zero += (length == 0);
+        n_inside += (length > 0 && length < largest);
+        n_largest += (length == largest);
+
+        const auto energy = [&](const double alpha) {
+          VectorType w(u);
+          w.add(alpha, v);
+          return functional.energy(w, state);
+        };
+        double best = 1e300, best_alpha = 0;
+        for (unsigned int i = 0; i <= n_points; ++i)
+          {
+            const double alpha = largest * i / n_points, e = energy(alpha);
+            if (e < best)
+              {
+                best       = e;
+                best_alpha = alpha;
+              }
+          }
+        const double found = energy(length);
+        excess             = std::max(excess, (found - best) / std::abs(best));
+        distance           = std::max(distance, std::abs(length - best_alpha));
+        // Nor is there anything better right beside it.
+        for (const double beside : {1 - 1e-4, 1 + 1e-4})
+          if (length * beside <= largest)
+            excess = std::max(
+              excess, (found - energy(length * beside)) / std::abs(found));
+      }
+    check(n_zero > 0 && n_inside > 0 && n_largest > 0,
+          "minima at both ends and inside");
+    check_below(excess, rounding, "no smaller energy along the line");
+    check_below(
+      distance, 2. / n_points, "the minimiser is where a fine scan finds it");
+  }
+
+
+
+  void
+  projection(TrescaProblem &fixture)
+  {
+    const Discretization<2>  &d = *fixture.discretization;
+    const TrescaFunctional<2> functional(fixture.problem());
+
+    double penetration = -1e300, penetration_of_length = -1e300, changed = 0;
+    bool   counted = true, longest = true, at_least_one = true;
+    unsigned int n_shortened = 0;
+    for (unsigned int i = 0; i < 20; ++i)
+      {
+        const VectorType u = fixture.random_start();
+        VectorType       v = fixture.random_direction();
+        v *= fixture.length * fixture.random(0, 1);
+        const VectorType original(v);
+
+        const unsigned int n_projected = functional.project(v, u);
+        VectorType         w(u);
+        w += v;
+        penetration = std::max(
+          penetration, functional.largest_penetration(w) / fixture.length);
+        unsigned int expected = 0;
+        for (const ContactNode<2> &node : *d.contact)
+          {
+            const bool too_far = normal_component(node, u) +
+                normal_component(node, original) - node.gap >
+              1e-12 * fixture.length;
+            expected += too_far;
+            VectorType difference(v);
+            changed =
+              std::max({changed,
+                        std::abs(tangential_components<2>(node, v)[0] -
+                                 tangential_components<2>(node, original)[0]) /
+                          fixture.length,
+                        too_far ? 0.
+                                : std::abs(normal_component(node, v) -
+                                           normal_component(node, original)) /
+                            fixture.length});
+          }
+        counted = counted && n_projected == expected;
+
+        // What has been projected may be followed at least once.
+        at_least_one =
+          at_least_one && functional.admissible_length(v, u, 2.) >= 1 - 1e-12;
+
+        // From a start without contact: as long as possible, no longer.
+        VectorType inside(u);
+        for (const ContactNode<2> &node : *d.contact)
+          for (unsigned int c = 0; c < 2; ++c)
+            inside.local_element(2 * node.node + c) -=
+              0.01 * fixture.length * node.normal()[c];
+        const double length =
+          functional.admissible_length(original, inside, 2.);
+        w = inside;
+        w.add(length, original);
+        penetration_of_length =
+          std::max(penetration_of_length,
+                   functional.largest_penetration(w) / fixture.length);
+        w.add(1e-6 * length, original);
+        n_shortened += (length < 2.);
+        longest =
+          longest && (length == 2. || functional.largest_penetration(w) > 0);
+      }
+    check_below(penetration, 1e-14, "projected corrections are admissible");
+    check(counted, "counted where they were not");
+    check_below(changed, 1e-14, "nothing else is changed");
+    check(at_least_one, "a projected correction may be followed to its end");
+    check_below(penetration_of_length, 1e-14, "admissible lengths are");
+    check(longest && n_shortened > 0, "and could not be larger");
+  }
+
+
+
+  // A linear problem: the phases of a solution, frozen, and a random load. The
+  // coarse cycle plus a little block Jacobi is a symmetric positive definite
+  // preconditioner; recombination must turn it into the conjugate gradient
+  // method, and never make things worse.
+  void
+  recombination(TrescaProblem &fixture)
+  {
+    const Discretization<2> &d       = *fixture.discretization;
+    const DiscreteProblem<2> problem = fixture.problem();
+    VectorType               u       = fixture.random_start();
+    ContactState             state   = fixture.initial_state();
+    MonotoneMultigrid<2>     multigrid(
+      d.dof_handler, *d.hierarchy, problem, SolverSettings());
+    multigrid.solve(u, state, false);
+    Linearization<2> linearization(*d.constraints,
+                                   *d.contact,
+                                   problem.friction_coefficient,
+                                   TruncationVariant::phases);
+    linearization.update(u, state);
+    const Truncation<2> &truncation = linearization.truncation();
+    CoarseCycle<2>       coarse(
+      d.dof_handler, d.matrix, *d.hierarchy, *d.constraints, Cycle::V, 6);
+    coarse.update(truncation);
+
+    VectorType b = fixture.random_direction();
+    truncation.apply(b.begin());
+    const auto residual = [&](const VectorType &x) {
+      VectorType r = fixture.product(x);
+      r.sadd(-1., 1., b);
+      return r;
+    };
+    const auto truncated = [&](VectorType r) {
+      truncation.apply(r.begin());
+      return r;
+    };
+    const auto precondition = [&](const VectorType &r) {
+      VectorType v(r), w(r);
+      coarse.apply(v, r);
+      for (unsigned int node = 0; node < d.constraints->n_owned_nodes(); ++node)
+        if (!d.constraints->is_hanging(node))
+          {
+            const double *block  = d.matrix.block(d.matrix.row_begin(node));
+            const double  factor = 1. / (block[0] + block[3]);
+            for (unsigned int c = 0; c < 2; ++c)
+              w.local_element(2 * node + c) *= factor;
+          }
+      truncation.apply(w.begin());
+      v += w;
+      return v;
+    };
+    const auto energy = [&](const VectorType &x) {
+      return .5 * (x * fixture.product(x)) - b * x;
+    };
+
+    const unsigned int  n_iterations = 25;
+    std::vector<double> reference;
+    {
+      VectorType x(b);
+      x            = 0.;
+      VectorType r = truncated(residual(x)), z = precondition(r), p(z);
+      double     rz = r * z;
+      for (unsigned int k = 0; k < n_iterations; ++k)
+        {
+          const VectorType Ap = fixture.product(p);
+          x.add(rz / (p * Ap), p);
+          reference.push_back(energy(x));
+          r                 = truncated(residual(x));
+          z                 = precondition(r);
+          const double next = r * z;
+          p.sadd(next / rz, 1., z);
+          rz = next;
+        }
+    }
+    const double minimum = reference.back();
+
+    std::vector<unsigned int> needed;
+    double                    difference = 0, worse = 0, length_error = 0;
+    bool                      participants = true;
+    for (const unsigned int n_steps : {0, 1, 2})
+      {
+        Recombination<2> recombination(n_steps);
+        VectorType       x(b);
+        x = 0.;
+        needed.push_back(1000);
+        for (unsigned int k = 0; k < 100; ++k)
+          {
+            recombination.add_iterate(x, residual(x));
+            const VectorType r  = truncated(residual(x));
+            VectorType       v  = precondition(r);
+            VectorType       Av = fixture.product(v);
+
+            const double       alone = (r * v) * (r * v) / (v * Av);
+            const unsigned int n = recombination.improve(v, Av, r, truncation);
+            const double       together = (r * v) * (r * v) / (v * Av);
+            if (k < n_iterations)
+              {
+                participants = participants && n == std::min(k, n_steps);
+                worse        = std::max(worse, 1 - together / alone);
+                VectorType deviation = fixture.product(v);
+                deviation -= Av;
+                // Av goes along with v, except in held components.
+                truncation.apply(deviation.begin());
+                worse =
+                  std::max(worse, deviation.linfty_norm() / Av.linfty_norm());
+                if (n > 0)
+                  length_error =
+                    std::max(length_error, std::abs((r * v) / (v * Av) - 1));
+              }
+            x.add((r * v) / (v * Av), v);
+            if (n_steps > 0 && k < 12)
+              difference = std::max(
+                difference, std::abs((energy(x) - reference[k]) / minimum));
+            if (energy(x) - minimum <= 1e-8 * std::abs(minimum))
+              {
+                needed.back() = std::min(needed.back(), k + 1);
+                if (k > 15)
+                  break;
+              }
+          }
+      }
+    check(participants, "all steps take part");
+    check_below(worse, 1e-9, "recombination never makes a correction worse");
+    check_below(length_error, 1e-8, "the combination has the right length");
+    check_below(difference, 1e-9, "it is the conjugate gradient method");
+    check(needed[1] < needed[0], "fewer steps with recombination");
+    check(needed[2] <= needed[1] + 1,
+          "more than one step neither helps nor harms");
+
+    // A step that has moved a node which now is held does not take part.
+    Recombination<2> one_step(1);
+    VectorType       x(b);
+    x = 0.;
+    one_step.add_iterate(x, residual(x));
+    x = precondition(truncated(residual(x)));
+    one_step.add_iterate(x, residual(x));
+    const VectorType r     = truncated(residual(x));
+    VectorType       v     = precondition(r);
+    VectorType       Av    = fixture.product(v);
+    unsigned int     moved = (*d.contact)[0].node;
+    for (const ContactNode<2> &node : *d.contact)
+      for (unsigned int c = 0; c < 2; ++c)
+        if (std::abs(x.local_element(2 * node.node + c)) > 0)
+          moved = node.node;
+    Truncation<2> other(truncation);
+    other.set(moved, zero_block<2>(), zero_block<2>());
+    VectorType w(v), Aw(Av);
+    const bool left_out = one_step.improve(w, Aw, r, other) == 0;
+    w -= v;
+    check(left_out && w.linfty_norm() == 0 &&
+            one_step.improve(v, Av, r, truncation) == 1,
+          "steps out of the free subspace are left out");
+    one_step.clear();
+    check(one_step.improve(v, Av, r, truncation) == 0,
+          "and all are, once forgotten");
+  }
+} // namespace
+
+int
+main(int argc, char **argv)
+{
+  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  for (const std::string name : {"hertz", "block"})
+    {
+      TrescaProblem fixture(std::string(SCENES_DIR) + "/" + name + ".prm",
+                            name == "hertz" ? 1 : 3);
+      std::cout << "Mesh of '" << name << "'" << std::endl;
+      check(fixture.converged && fixture.mesh->has_hanging_nodes(),
+            "has hanging nodes, and a Coulomb solution");
+
+      for (const Cycle cycle : {Cycle::V, Cycle::W})
+        for (const CoarseCorrection correction :
+             {CoarseCorrection::truncated, CoarseCorrection::monotone})
+          {
+            std::cout << "parts: "
+                      << (correction == CoarseCorrection::truncated
+                            ? "truncated, "
+                            : "monotone, ")
+                      << (cycle == Cycle::V ? "V" : "W") << std::endl;
+            part_by_part(fixture, correction, cycle);
+          }
+      std::cout << "whole iteration" << std::endl;
+      whole_iteration(fixture);
+      std::cout << "line search" << std::endl;
+      line_search(fixture);
+      std::cout << "projection" << std::endl;
+      projection(fixture);
+      std::cout << "recombination" << std::endl;
+      recombination(fixture);
+    }
+
+  // What recombination is worth in practice.
+  std::cout << "cycles of nested iteration" << std::endl;
+  NestedIteration<2> iteration(
+    read_parameters(SCENES_DIR "/hertz.prm", {"Refinement/Maximum dofs=2000"}));
+  std::array<unsigned int, 2> cycles = {{0, 0}};
+  do
+    {
+      iteration.solve();
+      for (const unsigned int n_steps : {0, 1})
+        {
+          SolverSettings settings   = iteration.parameters.solver;
+          settings.recombined_steps = n_steps;
+          VectorType   u;
+          ContactState state(0, false);
+          cycles[n_steps] +=
+            iteration.solve_with(settings, u, state).cycles.size();
+        }
+  } while (iteration.refine());
+  check(cycles[1] < cycles[0], "fewer with recombination than without");
+}
