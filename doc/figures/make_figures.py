@@ -79,7 +79,7 @@ def draw_obstacle(axes, depth=1.0):
 def body(run, output):
     """The deformed half disc, and its contact zone enlarged."""
     data = vtu.read(run.directory / "body-08.0000.vtu")
-    norm = PowerNorm(0.5, 0, 0.021)
+    norm = PowerNorm(0.5, 0, nodal_stress(data).max())
     figure, (whole, zoom) = plt.subplots(
         1, 2, figsize=(9, 2.9), gridspec_kw={"width_ratios": [1.08, 1]})
     figure.subplots_adjust(left=0.01, right=0.88, top=0.9, bottom=0.04,
@@ -102,7 +102,7 @@ def body(run, output):
     for spine in zoom.spines.values():
         spine.set_visible(True)
         spine.set_color(GREY)
-    zoom.set_title("contact zone, nine times larger")
+    zoom.set_title("contact zone, enlarged")
     whole.indicate_inset_zoom(zoom, edgecolor="k", alpha=0.6)
 
     place = zoom.get_position()
@@ -213,7 +213,7 @@ def readme(run, output):
     limits = (-0.13, 0.13)
     window = (limits, (-1.006, -0.8928))
     data = vtu.read(run.directory / "body-08.0000.vtu")
-    norm = PowerNorm(0.8, 0, 0.021)
+    norm = PowerNorm(0.8, 0, nodal_stress(data).max())
 
     figure = plt.figure(figsize=(7.2, 4.85), dpi=130)
     top = figure.add_axes([0.02, 0.36, 0.96, 0.63])

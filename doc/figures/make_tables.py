@@ -86,6 +86,17 @@ def comparison(runs):
     return "\n".join(rows)
 
 
+def ripple(run, level):
+    """How much the pressure differs from a smooth function inside the contact
+    zone, relative, root mean square. The middle, where there may be a peak, is
+    left out."""
+    x, pressure, _, _ = run.stresses(level)
+    x = x / run.levels["contact_half_width"][level]
+    inner = (np.abs(x) < 0.4) & (np.abs(x) > 0.05)
+    fit = np.polyfit(x[inner]**2, pressure[inner], 4)
+    return (pressure[inner] / np.polyval(fit, x[inner]**2) - 1).std()
+
+
 def checks(runs):
     """Single numbers that the text quotes."""
     rows = []
@@ -101,15 +112,15 @@ def checks(runs):
         x, pressure, shear, state = run.stresses()
         slides = state == 1
         gap = np.abs(np.abs(shear) - friction * pressure)[slides].max()
-        a = run.levels["contact_half_width"][-1]
-        middle = (np.abs(x) < 0.4 * a) & (np.abs(x) > 0.05 * a)
-        fit = np.polyfit((x[middle] / a)**2, pressure[middle], 4)
-        ripple = pressure[middle] / np.polyval(fit, (x[middle] / a)**2) - 1
         rows.append(f" F={friction:<4g} largest | |sigma_T| - F |sigma_n| | at a "
                     f"sliding node, of the largest pressure: "
-                    f"{gap / pressure.max():.0e}; ripple of the pressure, "
-                    f"|x| < 0.4 a: {ripple.std():.1e} rms, "
-                    f"{np.abs(ripple).max():.1e} largest")
+                    f"{gap / pressure.max():.0e}")
+        first = 9
+        rows.append(" " * 8 + f"ripple of the pressure, rms, from level {first}: " +
+                    " ".join(f"{ripple(run, level):.1e}"
+                             for level in range(first, run.last + 1)))
+    rows.append(" F=0.05 sticking nodes by level: " +
+                " ".join(map(str, Run(runs / "F-0.05").levels["sticky_nodes"])))
     for name, directory in (("true", "hertz"), ("false", "estimator-only")):
         level = {key: values[-1]
                  for key, values in Run(runs / directory).levels.items()}
