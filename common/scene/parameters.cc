@@ -313,7 +313,7 @@ namespace Friction
         {"Solver",
          "Recombined steps",
          "1",
-         steps,
+         make(Patterns::Integer(0, 20)),
          "Number of previous steps that a truncated coarse correction is "
          "recombined with; 0 for none."},
         {"Solver",
