@@ -1,0 +1,336 @@
+#ifndef friction_tests_support_random_problem_h
+#define friction_tests_support_random_problem_h
+
+#include <common/multigrid/truncation.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <Eigen/Dense>
+
+#include <random>
+
+#include <tests/support/check_below.h>
+#include <tests/support/discretization.h>
+
+namespace Tests
+{
+  /**
+   * Random numbers that are the same on every machine. The distributions of the
+   * standard library are not, its generators are.
+   */
+  class Random
+  {
+  public:
+    explicit Random(const unsigned int seed)
+      : generator(seed)
+    {}
+
+    /** Uniform in [low, high). */
+    double
+    operator()(const double low, const double high)
+    {
+      return low + (high - low) * (generator() / 4294967296.);
+    }
+
+    bool
+    chance(const double probability)
+    {
+      return (*this)(0., 1.) < probability;
+    }
+
+    /** 0, ..., n-1. */
+    unsigned int
+    below(const unsigned int n)
+    {
+      return generator() % n;
+    }
+
+  private:
+    std::mt19937 generator;
+  };
+
+
+
+  /**
+   * A block on a plane, its top pushed down and sideways. Contact may happen
+   * on all of its bottom, and on no Dirichlet node.
+   */
+  template <int dim>
+  Parameters
+  block_parameters(const FrictionLaw law, const double friction_coefficient)
+  {
+    Parameters p;
+    p.scene.geometry        = GeometryKind::rectangle;
+    p.scene.size            = std::vector<double>(dim, 1.);
+    p.scene.subdivisions    = std::vector<unsigned int>(dim, 1);
+    p.scene.size[0]         = 1.5;
+    p.scene.subdivisions[0] = (dim == 2 ? 3 : 2);
+    p.scene.subdivisions[1] = (dim == 2 ? 2 : 1);
+    p.scene.distortion      = .2;
+
+    const unsigned int vertical = (dim == 2 ? 1 : 2);
+    p.obstacle.kind             = ObstacleKind::plane;
+    p.obstacle.point            = std::vector<double>(dim, 0.);
+    p.obstacle.normal           = std::vector<double>(dim, 0.);
+    p.obstacle.normal[vertical] = -1.;
+
+    std::vector<std::string> displacement(dim, "0.02");
+    displacement[vertical] = "-0.02";
+    p.boundary_conditions.displacement.push_back(
+      {dim == 2 ? "3" : "5", displacement});
+
+    p.contact.boundary_id          = (dim == 2 ? 2 : 4);
+    p.contact.friction_law         = law;
+    p.contact.friction_coefficient = friction_coefficient;
+    return p;
+  }
+
+
+
+  /**
+   * Refines cells picked at random, those near the bottom more often, and
+   * coarsens some others: hanging nodes next to the contact boundary, and mesh
+   * sizes that change towards it and away from it.
+   */
+  template <int dim>
+  void
+  refine_at_random(Triangulation<dim> &mesh,
+                   const unsigned int  n_rounds,
+                   const double        density,
+                   Random             &random)
+  {
+    for (unsigned int round = 0; round < n_rounds; ++round)
+      {
+        for (const auto &cell : mesh.active_cell_iterators())
+          {
+            const bool at_bottom =
+              cell->center()[dim - 1] < .6 * cell->diameter();
+            const double dice = random(0., 1.);
+            if (dice < (at_bottom ? density : .4 * density))
+              cell->set_refine_flag();
+            else if (dice > .9)
+              cell->set_coarsen_flag();
+          }
+        mesh.execute_coarsening_and_refinement();
+      }
+  }
+
+
+
+  /** A scene, a mesh refined at random for it, and its discretisation. */
+  template <int dim>
+  struct RandomProblem
+  {
+    RandomProblem(const Parameters  &parameters,
+                  const unsigned int n_rounds,
+                  const double       density,
+                  Random            &random)
+      : scene(parameters)
+      , mesh(make_triangulation<dim>())
+    {
+      scene.make_coarse_mesh(*mesh);
+      refine_at_random<dim>(*mesh, n_rounds, density, random);
+      discretization = std::make_unique<Discretization<dim>>(scene, *mesh);
+    }
+
+    const NodalConstraints<dim> &
+    constraints() const
+    {
+      return *discretization->constraints;
+    }
+
+    const ContactBoundary<dim> &
+    contact() const
+    {
+      return *discretization->contact;
+    }
+
+    const LevelHierarchy<dim> &
+    hierarchy() const
+    {
+      return *discretization->hierarchy;
+    }
+
+    const NodeBlockMatrix<dim> &
+    matrix() const
+    {
+      return discretization->matrix;
+    }
+
+    VectorType
+    leaf_vector() const
+    {
+      return VectorType(constraints().partitioner());
+    }
+
+    unsigned int
+    n_hanging() const
+    {
+      unsigned int n = 0;
+      for (unsigned int i = 0; i < constraints().n_nodes(); ++i)
+        n += constraints().is_hanging(i);
+      return n;
+    }
+
+    /** The number of hanging nodes one of whose masters is truncated although
+     * nothing is prescribed there. */
+    unsigned int
+    n_hanging_with_truncated_master(const Truncation<dim> &truncation) const
+    {
+      unsigned int n = 0;
+      for (unsigned int i = 0; i < constraints().n_nodes(); ++i)
+        if (constraints().is_hanging(i))
+          {
+            bool found = false;
+            for (const auto &master :
+                 *discretization->hanging.get_constraint_entries(
+                   constraints().partitioner()->local_to_global(dim * i)))
+              {
+                const unsigned int m = constraints().node_of_dof(master.first);
+                found                = found ||
+                  (constraints().is_free(m) && !truncation.is_identity(m));
+              }
+            n += found;
+          }
+      return n;
+    }
+
+    const Scene<dim>                                           scene;
+    std::unique_ptr<parallel::distributed::Triangulation<dim>> mesh;
+    std::unique_ptr<Discretization<dim>>                       discretization;
+  };
+
+
+
+  /** The matrix as a dense one; hanging nodes have zero rows and columns. */
+  template <int dim>
+  Eigen::MatrixXd
+  to_dense(const NodeBlockMatrix<dim> &A)
+  {
+    Eigen::MatrixXd result =
+      Eigen::MatrixXd::Zero(dim * A.n_rows(), dim * A.n_rows());
+    for (unsigned int i = 0; i < A.n_rows(); ++i)
+      for (std::size_t e = A.row_begin(i); e < A.row_end(i); ++e)
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int r = 0; r < dim; ++r)
+            result(dim * i + r, dim * A.column(e) + c) =
+              A.block(e)[c * dim + r];
+    return result;
+  }
+
+
+
+  inline VectorType
+  to_vector(const Eigen::VectorXd &x, const VectorType &like)
+  {
+    VectorType result(like);
+    for (unsigned int i = 0; i < x.size(); ++i)
+      result.local_element(i) = x(i);
+    return result;
+  }
+
+
+
+  inline Eigen::VectorXd
+  to_eigen(const VectorType &v)
+  {
+    Eigen::VectorXd result(v.locally_owned_size());
+    for (unsigned int i = 0; i < result.size(); ++i)
+      result(i) = v.local_element(i);
+    return result;
+  }
+
+
+
+  /** A unit vector of random direction. */
+  template <int dim>
+  Eigen::Matrix<double, dim, 1>
+  random_direction(Random &random)
+  {
+    Eigen::Matrix<double, dim, 1> d;
+    do
+      for (unsigned int c = 0; c < dim; ++c)
+        d(c) = random(-1., 1.);
+    while (d.norm() < .1 || d.norm() > 1.);
+    return d.normalized();
+  }
+
+
+
+  /**
+   * At a node, an orthogonal projector of random rank and direction, and a
+   * positive semidefinite curvature on its range.
+   * @param scale  of the curvature, zero for none.
+   */
+  template <int dim>
+  void
+  truncate_at_random(Truncation<dim>   &truncation,
+                     const unsigned int node,
+                     const unsigned int rank,
+                     const double       scale,
+                     Random            &random)
+  {
+    using Matrix    = Eigen::Matrix<double, dim, dim>;
+    const auto   d  = random_direction<dim>(random);
+    const Matrix dd = d * d.transpose();
+    Matrix       T  = Matrix::Zero();
+    if (rank == dim)
+      T = Matrix::Identity();
+    else if (rank == dim - 1)
+      T = Matrix::Identity() - dd;
+    else if (rank == 1)
+      T = dd;
+    Matrix root;
+    for (unsigned int e = 0; e < dim * dim; ++e)
+      root(e) = random(-1., 1.);
+    const Matrix omega = scale * T * root * root.transpose() * T;
+
+    NodeBlock<dim> projector, curvature;
+    for (unsigned int e = 0; e < dim * dim; ++e)
+      {
+        projector[e] = T(e);
+        curvature[e] = omega(e);
+      }
+    truncation.set(node, projector, curvature);
+  }
+
+
+
+  /** The same at all contact nodes. */
+  template <int dim>
+  Truncation<dim>
+  random_truncation(const NodalConstraints<dim> &constraints,
+                    const ContactBoundary<dim>  &contact,
+                    const double                 scale,
+                    Random                      &random)
+  {
+    Truncation<dim> truncation(constraints);
+    for (const ContactNode<dim> &p : contact)
+      if (p.n_free_tangents == dim - 1)
+        truncate_at_random<dim>(
+          truncation, p.node, random.below(dim + 1), scale, random);
+    return truncation;
+  }
+
+
+
+  /** T and omega'' of all leaf nodes, as dense matrices. */
+  template <int dim>
+  std::pair<Eigen::MatrixXd, Eigen::MatrixXd>
+  to_dense(const Truncation<dim> &truncation, const unsigned int n_nodes)
+  {
+    Eigen::MatrixXd T     = Eigen::MatrixXd::Zero(dim * n_nodes, dim * n_nodes);
+    Eigen::MatrixXd omega = T;
+    for (unsigned int i = 0; i < n_nodes; ++i)
+      for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int r = 0; r < dim; ++r)
+          {
+            T(dim * i + r, dim * i + c) = truncation.projector(i)[c * dim + r];
+            omega(dim * i + r, dim * i + c) =
+              truncation.curvature(i)[c * dim + r];
+          }
+    return {T, omega};
+  }
+} // namespace Tests
+
+#endif
