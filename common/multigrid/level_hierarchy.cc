@@ -43,6 +43,11 @@ namespace Friction
     , finest_levels(constraints.n_nodes(), 0)
   {
     const Triangulation<dim> &triangulation = dof_handler.get_triangulation();
+    AssertThrow(triangulation.get_mesh_smoothing() &
+                  Triangulation<dim>::limit_level_difference_at_vertices,
+                ExcMessage("The levels need a triangulation made with "
+                           "Triangulation::limit_level_difference_at_vertices, "
+                           "so that each hanging node belongs to one level."));
 
     // Which leaf node is at which vertex, and the range of levels of the active
     // cells around it.

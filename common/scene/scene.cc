@@ -476,7 +476,9 @@ namespace Friction
 
     // The mesh is made in a triangulation that lives on one processor, since
     // vertices can be moved freely there, and is then copied.
-    Triangulation<dim> mesh;
+    // The copy at the end takes over this mesh's policy of refinement as well,
+    // which therefore has to be the one that the given triangulation has.
+    Triangulation<dim> mesh(triangulation.get_mesh_smoothing());
     switch (parameters.scene.geometry)
       {
         case GeometryKind::half_disc:
