@@ -710,12 +710,13 @@ namespace StepFriction2d
     text << std::scientific << std::setprecision(2)
          << "         error against the exact solution: energy norm "
          << energy_error;
-    if (last_exact_error > 0 &&
+    const bool exact_at_nodes = node_error <= 1e-10 * node_size;
+    if (last_exact_error > 0 && !exact_at_nodes &&
         parameters.refinement.strategy == RefinementStrategy::uniform)
       text << std::fixed << " (order "
            << std::log2(last_exact_error / energy_error) << ")"
            << std::scientific;
-    if (node_error > 1e-10 * node_size)
+    if (!exact_at_nodes)
       text << ", nodes " << node_error / node_size << " of the largest";
     else
       text << ", nodes exact to 1e-10";
@@ -745,7 +746,7 @@ namespace StepFriction2d
              << eck_bound(dim, scene.material().poisson_ratio())
              << " for this Poisson ratio, below which a solution is known to "
                 "exist; there may be none, or several.";
-        console.note(text.str());
+        console.warning(text.str());
       }
 
     make_coarse_mesh();
@@ -832,8 +833,14 @@ main(int argc, char *argv[])
           return 0;
         }
       if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
-        throw InputError("More than one process is not supported yet: run this "
-                         "program without mpirun, or with -np 1.");
+        {
+          if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+            std::cerr << "step-friction-2d: more than one process is not "
+                         "supported yet: run this program without mpirun, or "
+                         "with -np 1."
+                      << std::endl;
+          return 2;
+        }
 
       const Parameters parameters =
         read_parameters(arguments[0], {arguments.begin() + 1, arguments.end()});

@@ -10,6 +10,17 @@ namespace Friction
 {
   namespace
   {
+    // The larger of the two, where nothing is larger than NaN: a result that is
+    // not a number must never look like a small one.
+    void
+    raise(double &largest, const double value)
+    {
+      if (!std::isnan(largest) && !(value <= largest))
+        largest = value;
+    }
+
+
+
     std::array<std::pair<const char *, double>, 6>
     entries(const Certificate &c)
     {
@@ -29,8 +40,7 @@ namespace Friction
   {
     double largest = 0;
     for (const auto &entry : entries(*this))
-      if (!(entry.second <= largest)) // true for NaN as well
-        largest = entry.second;
+      raise(largest, entry.second);
     return largest;
   }
 
@@ -58,10 +68,11 @@ namespace Friction
                    const ContactBoundary<dim>  &contact,
                    const ContactState          &state,
                    const double                 friction_coefficient,
-                   const bool                   coulomb)
+                   const bool                   coulomb,
+                   const double                 force_of_rounding)
   {
     std::vector<char> is_contact_node(constraints.n_owned_nodes(), 0);
-    double            force_scale = 0, length_scale = 0;
+    double            force_scale = force_of_rounding, length_scale = 0;
     for (const ContactNode<dim> &node : contact)
       is_contact_node[node.node] = 1;
 
@@ -73,8 +84,7 @@ namespace Friction
             const double r = std::abs(residual.local_element(dim * node + d));
             force_scale    = std::max(force_scale, r);
             if (!is_contact_node[node] && !constraints.is_prescribed(node, d))
-              result.equilibrium =
-                !(r <= result.equilibrium) ? r : result.equilibrium;
+              raise(result.equilibrium, r);
           }
     for (const ContactNode<dim> &node : contact)
       for (unsigned int d = 0; d < dim; ++d)
@@ -89,10 +99,6 @@ namespace Friction
       length_scale = 1.;
     result.equilibrium /= force_scale;
 
-    const auto raise = [](double &largest, const double value) {
-      if (!(value <= largest))
-        largest = value;
-    };
     for (unsigned int p = 0; p < contact.size(); ++p)
       {
         const ContactNode<dim> &node = contact[p];
@@ -142,12 +148,14 @@ namespace Friction
                                         const ContactBoundary<2> &,
                                         const ContactState &,
                                         const double,
-                                        const bool);
+                                        const bool,
+                                        const double);
   template Certificate make_certificate(const VectorType &,
                                         const VectorType &,
                                         const NodalConstraints<3> &,
                                         const ContactBoundary<3> &,
                                         const ContactState &,
                                         const double,
-                                        const bool);
+                                        const bool,
+                                        const double);
 } // namespace Friction

@@ -40,6 +40,9 @@ namespace Friction
    * @param residual  f - A u, at all nodes.
    * @param coulomb   the bound is F times the normal force of @p u itself;
    *                  otherwise F times that of the state.
+   * @param force_of_rounding  forces are not divided by less than this, so that
+   *                  a body that merely moves, without any force but those of
+   *                  rounding, is in equilibrium.
    */
   template <int dim>
   Certificate make_certificate(const VectorType            &u,
@@ -48,7 +51,8 @@ namespace Friction
                                const ContactBoundary<dim>  &contact,
                                const ContactState          &state,
                                const double friction_coefficient,
-                               const bool   coulomb);
+                               const bool   coulomb,
+                               const double force_of_rounding = 0.);
 } // namespace Friction
 
 #endif

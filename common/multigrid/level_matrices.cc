@@ -251,9 +251,12 @@ namespace Friction
   {
     // Which leaf nodes have changed, and which leaf rows that touches.
     std::vector<unsigned int> changed_nodes;
-    for (const unsigned int node : new_truncation.special_nodes())
-      if (!truncation.agrees(new_truncation, node))
-        changed_nodes.push_back(node);
+    for (const Truncation<dim> *special :
+         std::initializer_list<const Truncation<dim> *>{&new_truncation,
+                                                        &truncation})
+      for (const unsigned int node : special->special_nodes())
+        if (!truncation.agrees(new_truncation, node))
+          changed_nodes.push_back(node);
     if (changed_nodes.empty())
       return 0;
     truncation = new_truncation;

@@ -20,7 +20,7 @@ namespace Friction
               projector[d * dim + d] = 0.;
           set(node, projector, zero_block<dim>());
         }
-    n_from_constraints = specials.size();
+    held_by_constraints = n_held_components();
   }
 
 
@@ -91,12 +91,21 @@ namespace Friction
 
   template <int dim>
   double
-  Truncation<dim>::n_truncated_components() const
+  Truncation<dim>::n_held_components() const
   {
     double sum = 0;
-    for (unsigned int s = n_from_constraints; s < specials.size(); ++s)
-      sum += dim - trace<dim>(projectors[slot[specials[s]]].data());
+    for (const unsigned int node : specials)
+      sum += dim - trace<dim>(projectors[slot[node]].data());
     return sum;
+  }
+
+
+
+  template <int dim>
+  double
+  Truncation<dim>::n_truncated_components() const
+  {
+    return n_held_components() - held_by_constraints;
   }
 
 

@@ -35,7 +35,9 @@ namespace Friction
              const NodeBlock<dim> &projector,
              const NodeBlock<dim> &curvature);
 
-    /** The node is free in all directions, without second derivative. */
+    /** The node has always been free in all directions: a quick test that lets
+     * most blocks pass without a product. A node that was given a subspace once
+     * may have become free again and still say no. */
     bool
     is_identity(const unsigned int node) const
     {
@@ -80,10 +82,12 @@ namespace Friction
     static constexpr unsigned int zero_slot     = 1;
 
     unsigned int                n_owned;
-    unsigned int                n_from_constraints = 0;
+    double                      held_by_constraints = 0;
     std::vector<unsigned int>   slot;
     std::vector<NodeBlock<dim>> projectors, curvatures;
     std::vector<unsigned int>   specials;
+
+    double n_held_components() const;
   };
 } // namespace Friction
 

@@ -96,8 +96,15 @@ namespace Friction
   void
   Console::note(const std::string &text)
   {
-    if (silent)
-      return;
+    if (!silent)
+      warning(text);
+  }
+
+
+
+  void
+  Console::warning(const std::string &text)
+  {
     clear_progress();
     out << text << std::endl;
   }

@@ -18,7 +18,8 @@ namespace Friction
    * clock is printed if times are switched off, so that the output can be
    * compared from run to run.
    *
-   * With several processes all but one construct a silent console.
+   * A silent console prints warnings and nothing else. With several processes
+   * all but one construct theirs on a stream that leads nowhere.
    */
   class Console
   {
@@ -48,8 +49,11 @@ namespace Friction
                   const unsigned int cycle,
                   const double       increment);
 
-    /// A line of text between the rows: a warning or a remark.
+    /// A line of text between the rows: a remark.
     void note(const std::string &text);
+
+    /// The same for a warning or an error, which even a silent console prints.
+    void warning(const std::string &text);
 
   private:
     using Clock = std::chrono::steady_clock;

@@ -1,9 +1,31 @@
 #include <common/solvers/coulomb_solver.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace Friction
 {
+  namespace
+  {
+    // The largest force that the displacement of a single node would cause,
+    // reduced to what is left of it where rounding errors are all there is.
+    template <int dim>
+    double
+    force_of_rounding(const DiscreteProblem<dim> &problem, const VectorType &u)
+    {
+      double largest = 0;
+      for (unsigned int i = 0; i < problem.matrix.n_rows(); ++i)
+        if (problem.matrix.row_begin(i) < problem.matrix.row_end(i))
+          largest = std::max(
+            largest,
+            trace<dim>(problem.matrix.block(problem.matrix.row_begin(i))) *
+              std::sqrt(dot<dim>(u.begin() + dim * i, u.begin() + dim * i)));
+      return 1e-8 * largest;
+    }
+  } // namespace
+
+
+
   double
   SolverReport::rho_tau_as_printed() const
   {
@@ -72,7 +94,8 @@ namespace Friction
                                                problem.contact,
                                                state,
                                                problem.effective_coefficient(),
-                                               coulomb);
+                                               coulomb,
+                                               force_of_rounding(problem, u));
     if (!(report.certificate.largest() <= settings.certificate_tolerance))
       report.converged = false;
     return report;

@@ -69,6 +69,23 @@ namespace Friction
 
 
 
+  // A body that merely moves has no energy but that of rounding errors, with
+  // which no increment should be compared. The diagonal of the matrix says what
+  // energy a displacement of this size could have.
+  template <int dim>
+  double
+  MonotoneMultigrid<dim>::smallest_norm(const VectorType &u) const
+  {
+    double sum = 0;
+    for (unsigned int i = 0; i < problem.matrix.n_rows(); ++i)
+      if (problem.matrix.row_begin(i) < problem.matrix.row_end(i))
+        sum += trace<dim>(problem.matrix.block(problem.matrix.row_begin(i))) *
+          dot<dim>(u.begin() + dim * i, u.begin() + dim * i);
+    return std::max(1e-12 * sum, 1e-300);
+  }
+
+
+
   template <int dim>
   void
   MonotoneMultigrid<dim>::set_normal_forces(ContactState     &state,
@@ -141,8 +158,8 @@ namespace Friction
                   (problem.forces.local_element(i) - residual.local_element(i));
               }
             CycleInfo &info = result.cycles.back();
-            info.increment =
-              std::sqrt(std::max(0., increment) / std::max(norm, 1e-300));
+            info.increment  = std::sqrt(std::max(0., increment) /
+                                       std::max(norm, smallest_norm(u)));
             if (progress)
               progress(cycle, info.increment);
             if (!std::isfinite(info.increment))

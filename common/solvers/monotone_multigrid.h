@@ -126,6 +126,8 @@ namespace Friction
     CoarseCycle<dim>            coarse;
     MultigridCost               costs;
 
+    double smallest_norm(const VectorType &u) const;
+
     void set_normal_forces(ContactState     &state,
                            const VectorType &residual) const;
 

@@ -187,10 +187,18 @@ namespace Friction
     double length = largest;
     for (const ContactNode<dim> &node : problem.contact)
       {
-        const double v_n  = normal_component(node, v);
-        const double room = node.gap - normal_component(node, u);
-        if (v_n > 0 && room > 0 && v_n * length > room)
-          length = room / v_n;
+        // A correction that has been projected uses up its room to the last
+        // digit, and at a node in contact both are nothing but rounding of the
+        // numbers involved; neither must cut the step.
+        double size = std::abs(node.gap);
+        for (unsigned int d = 0; d < dim; ++d)
+          size += std::abs(u.local_element(dim * node.node + d)) +
+            std::abs(v.local_element(dim * node.node + d));
+        const double rounding = 1e-14 * size;
+        const double v_n      = normal_component(node, v);
+        const double room = std::max(0., node.gap - normal_component(node, u));
+        if (v_n > rounding && v_n * length > room + rounding)
+          length = (room + rounding) / v_n;
       }
     return length;
   }
