@@ -9,6 +9,7 @@ import re
 import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 
 from hertz import HALF_PLANE, THESIS, Run
@@ -121,12 +122,34 @@ def checks(runs):
                              for level in range(first, run.last + 1)))
     rows.append(" F=0.05 sticking nodes by level: " +
                 " ".join(map(str, Run(runs / "F-0.05").levels["sticky_nodes"])))
-    for name, directory in (("true", "hertz"), ("false", "estimator-only")):
-        level = {key: values[-1]
-                 for key, values in Run(runs / directory).levels.items()}
-        rows.append(f" Contact zone = {name}: {level['dofs']} dofs, "
-                    f"{level['contact_nodes']} contact, {level['sticky_nodes']} "
-                    f"sticky, energy {level['energy']:.5e}")
+    # The estimator alone refines in smaller steps: its last mesh that is not
+    # larger is the one to compare with.
+    all_contact = Run(runs / "hertz").levels
+    alone = Run(runs / "estimator-only").levels
+    for name, levels in (("true", all_contact), ("false", alone)):
+        k = np.flatnonzero(levels["dofs"] <= all_contact["dofs"][-1])[-1]
+        rows.append(f" Contact zone = {name}: {levels['dofs'][k]} dofs, "
+                    f"{levels['contact_nodes'][k]} contact, "
+                    f"{levels['sticky_nodes'][k]} sticky, "
+                    f"energy {levels['energy'][k]:.5e}")
+    with h5py.File(runs / "fixed-point" / "history.h5") as file:
+        level, change = file["outer/level"][:], file["outer/change"][:]
+    rows.append(" Algorithm 2, first change of the normal forces, from level 5:")
+    rows.append("    " + " ".join(f"{change[level == k][0]:.1e}"
+                                  for k in range(5, jacobi.last + 1)))
+    most = int(np.argmax(seidel.levels["cycles"]))
+    with h5py.File(runs / "W33-monotone" / "history.h5") as file:
+        here = file["cycles/level"][:] == most
+        increments = file["cycles/increment"][:][here]
+        truncated = file["cycles/truncated"][:][here]
+    rows.append(f" W(3,3) monotone, level {most}: increments of the cycles, and "
+                "how many components were truncated:")
+    rows += ["   " + " ".join(f"{value:5.0e}" for value in increments),
+             "   " + " ".join(f"{value:5.0f}" for value in truncated)]
+    marked = {f: Run(runs / f"marking-F-{f:g}").levels["cycles"].max()
+              for f in (0.05, 0.4, 1)}
+    rows.append(" V(3,3) monotone, Marking = 0.5, most cycles on a level: " +
+                ", ".join(f"{most} for F={f:g}" for f, most in marked.items()))
     worst = max(Run(path.parent).levels["certificate"].max()
                 for path in runs.glob("*/history.h5"))
     rows.append(f" largest certificate on any level of any run here: {worst:.0e}")
