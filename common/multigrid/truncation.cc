@@ -1,5 +1,7 @@
 #include <common/multigrid/truncation.h>
 
+#include <cmath>
+
 namespace Friction
 {
   template <int dim>
@@ -95,7 +97,7 @@ namespace Friction
   {
     double sum = 0;
     for (const unsigned int node : specials)
-      sum += dim - trace<dim>(projectors[slot[node]].data());
+      sum += dim - std::round(trace<dim>(projectors[slot[node]].data()));
     return sum;
   }
 

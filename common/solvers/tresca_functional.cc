@@ -194,7 +194,7 @@ namespace Friction
         for (unsigned int d = 0; d < dim; ++d)
           size += std::abs(u.local_element(dim * node.node + d)) +
             std::abs(v.local_element(dim * node.node + d));
-        const double rounding = 1e-14 * size;
+        const double rounding = 2e-15 * size;
         const double v_n      = normal_component(node, v);
         const double room = std::max(0., node.gap - normal_component(node, u));
         if (v_n > rounding && v_n * length > room + rounding)

@@ -114,8 +114,7 @@ namespace
             const double n           = phase < slip ? 1. : 0.;
             const double t =
               has_tangent && phase != stick && phase != open_stick ? 1. : 0.;
-            if (has_tangent)
-              n_held += 2. - n - t;
+            n_held += (has_tangent ? 2. : 1.) - n - t;
             for (unsigned int c = 0; c < dim; ++c)
               for (unsigned int r = 0; r < dim; ++r)
                 {
@@ -227,9 +226,7 @@ namespace
     check(*std::min_element(n_of_phase.begin(), n_of_phase.end()) > 20,
           "every phase occurs");
     check_below(projectors, 1e-15, "free subspaces of the phases");
-    check_below(held,
-                1e-12,
-                "the number of truncated components, where none is prescribed");
+    check_below(held, 1e-12, "the number of truncated components");
     check(!curvature, "in 2D friction has no second derivative");
     check_below(truncated, 1e-15, "the linearised residual is truncated");
     check_below(derivative, 1e-12, "it is minus the derivative of the energy");

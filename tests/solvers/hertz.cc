@@ -37,8 +37,8 @@ namespace
   {
     std::ostringstream override;
     override << "Contact/Friction coefficient=" << F;
-    std::vector<std::string> overrides = {override.str(),
-                                          "Refinement/Maximum dofs=3000"};
+    std::vector<std::string> overrides = {
+      override.str(), "Refinement/Marking=0.5", "Refinement/Maximum dofs=3000"};
     overrides.insert(overrides.end(), more.begin(), more.end());
 
     NestedIteration<2> iteration(
