@@ -49,12 +49,15 @@
 #include <common/solvers/coulomb_solver.h>
 #include <common/solvers/initial_guess.h>
 
-#include <cstdlib>
+#include <algorithm>
+#include <cmath>
 #include <exception>
 #include <iomanip>
 #include <iostream>
 #include <memory>
 #include <sstream>
+#include <string>
+#include <vector>
 
 namespace StepFriction2d
 {
@@ -205,8 +208,8 @@ namespace StepFriction2d
     renumber_nodes(dof_handler);
 
     const IndexSet &owned = dof_handler.locally_owned_dofs();
-    IndexSet        relevant;
-    DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+    const IndexSet  relevant =
+      DoFTools::extract_locally_relevant_dofs(dof_handler);
 
     hanging_node_constraints = Compatibility::make_constraints(owned, relevant);
     DoFTools::make_hanging_node_constraints(dof_handler,
@@ -273,8 +276,8 @@ namespace StepFriction2d
   void
   ContactProblem<dim>::assemble_system()
   {
-    IndexSet relevant;
-    DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+    const IndexSet relevant =
+      DoFTools::extract_locally_relevant_dofs(dof_handler);
     DynamicSparsityPattern pattern(relevant);
     DoFTools::make_sparsity_pattern(dof_handler,
                                     pattern,
@@ -379,24 +382,25 @@ namespace StepFriction2d
 
   // Here the five parts of the method come together. What the solver is given
   // is the discrete problem, which is no more than references to what we have
-  // set up, and the hierarchy of levels; from these it builds <ul> <li> the
-  // leading relaxation on the leaf mesh, which enforces contact and
+  // set up, and the hierarchy of levels; from these it builds
+  // - the leading relaxation on the leaf mesh, which enforces contact and
   //   friction node by node (<code>MonotoneSmoother</code>);
-  // <li> phases, truncation and derivatives of friction
+  // - phases, truncation and derivatives of friction
   //   (<code>Linearization</code>, <code>Truncation</code>);
-  // <li> one linear multigrid cycle for a correction (<code>CoarseCycle</code>
+  // - one linear multigrid cycle for a correction (<code>CoarseCycle</code>,
   //   on the Galerkin products in <code>LevelMatrices</code>);
-  // <li> the recombination of that correction with the last one
-  //   (<code>Recombination</code>);
-  // <li> projection to the admissible displacements and line search
-  //   (<code>TrescaFunctional</code>).
-  // </ul>
+  // - projection to the admissible displacements and line search
+  //   (<code>TrescaFunctional</code>), along the correction recombined with the
+  //   last step (<code>Recombination</code>);
+  // - the energy that all of them agree on (<code>TrescaFunctional</code>).
+  //
   // The coefficient of friction of Tresca's law is absorbed in the given
   // bounds.
   template <int dim>
   void
   ContactProblem<dim>::solve(const unsigned int level)
   {
+    Timer                     timer;
     const LevelHierarchy<dim> hierarchy(dof_handler, *nodal_constraints);
     const bool tresca = scene.friction_law() == FrictionLaw::tresca;
     const DiscreteProblem<dim> problem = {
@@ -422,7 +426,6 @@ namespace StepFriction2d
           (*contact_boundary)[p].measure *
             scene.friction_bound()->value((*contact_boundary)[p].point));
 
-    Timer              timer;
     CoulombSolver<dim> solver(
       dof_handler, hierarchy, problem, parameters.solver);
     setup_seconds += timer.wall_time();

@@ -29,7 +29,7 @@ namespace Friction
     /** The largest of all. */
     double largest() const;
 
-    /** The name of the largest and all values, for a message. */
+    /** All values with their names, for a message. */
     std::string describe() const;
   };
 

@@ -1,6 +1,7 @@
 #ifndef friction_contact_contact_state_h
 #define friction_contact_contact_state_h
 
+#include <cstddef>
 #include <vector>
 
 namespace Friction

@@ -29,8 +29,8 @@ namespace Friction
    * The problem is strictly convex and is solved exactly: first without the
    * obstacle, eliminating $z_n$ by its Schur complement; if that penetrates,
    * with $z_n = g$. Either way a problem in the tangential plane remains. In
-   * two dimensions its unit sphere has just two points, so stick, and slip to
-   * either side are compared directly, (6.18).
+   * two dimensions its unit sphere has just two points, so that stick, or slip
+   * to one side or the other, can be told from the force alone, (6.18).
    *
    * Units: $z$ and $g$ are displacements, $b$ and $s$ nodal forces.
    *

@@ -12,8 +12,8 @@ namespace Friction
     const AffineConstraints<double> &hanging,
     const AffineConstraints<double> &dirichlet)
   {
-    IndexSet relevant;
-    DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+    const IndexSet relevant =
+      DoFTools::extract_locally_relevant_dofs(dof_handler);
     leaf_partitioner = std::make_shared<Utilities::MPI::Partitioner>(
       dof_handler.locally_owned_dofs(),
       relevant,

@@ -39,7 +39,6 @@ namespace Friction
     , cycle_parameter(cycle == Cycle::V ? 1 : 2)
     , smoothing_steps(smoothing_steps)
     , matrices(leaf_matrix, hierarchy, constraints)
-    , truncation(constraints)
   {
     coarsest = std::make_unique<CoarsestSolver<dim>>(dof_handler, matrices);
     const unsigned int n = matrices.n_levels();
@@ -62,10 +61,7 @@ namespace Friction
   std::size_t
   CoarseCycle<dim>::update(const Truncation<dim> &new_truncation)
   {
-    const std::size_t n_rows = matrices.update(new_truncation);
-    if (n_rows > 0)
-      truncation = new_truncation;
-    return n_rows;
+    return matrices.update(new_truncation);
   }
 
 
@@ -118,7 +114,7 @@ namespace Friction
           for (unsigned int d = 0; d < dim; ++d)
             v.local_element(dim * hierarchy.level(0).leaf_node(node) + d) =
               correction[0].local_element(dim * node + d);
-        truncation.apply(v.begin());
+        matrices.current_truncation().apply(v.begin());
         return;
       }
 
@@ -152,7 +148,7 @@ namespace Friction
             add_prolongated<dim>(
               level.parents(), node, correction[below].begin(), value);
         }
-    truncation.apply(v.begin());
+    matrices.current_truncation().apply(v.begin());
   }
 
 
@@ -267,7 +263,6 @@ namespace Friction
       if (!inside)
         {
           const double  *block = B.block(B.row_begin(i));
-          const double   cut   = 1e-10 * trace<dim>(block);
           NodeValue<dim> before;
           step = NodeValue<dim>{};
           for (unsigned int sweep = 0; sweep < 10; ++sweep)
@@ -276,7 +271,7 @@ namespace Friction
               for (unsigned int d = 0; d < dim; ++d)
                 {
                   // A component that cannot move has a zero row in the inverse.
-                  if (block[d * dim + d] <= cut || inverse[d * dim + d] == 0.)
+                  if (inverse[d * dim + d] == 0.)
                     continue;
                   double gradient = defect[d];
                   for (unsigned int e = 0; e < dim; ++e)

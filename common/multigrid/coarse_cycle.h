@@ -4,7 +4,7 @@
 #include <common/multigrid/coarsest_solver.h>
 #include <common/multigrid/level_matrices.h>
 #include <common/multigrid/sweep_schedule.h>
-#include <common/solvers/settings.h>
+#include <common/scene/solver_settings.h>
 
 #include <deal.II/dofs/dof_handler.h>
 
@@ -84,7 +84,6 @@ namespace Friction
     LevelMatrices<dim>                   matrices;
     std::unique_ptr<CoarsestSolver<dim>> coarsest;
     std::vector<SweepSchedule<dim>>      schedules;
-    Truncation<dim>                      truncation;
 
     // Per level: right hand side, correction, what the next coarser level had
     // when the visit began, and vectors of work. The corrections of a W-cycle

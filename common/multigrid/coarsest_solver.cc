@@ -3,6 +3,8 @@
 
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 
+#include <algorithm>
+
 namespace Friction
 {
   template <int dim>
@@ -79,7 +81,6 @@ namespace Friction
     solver = std::make_unique<TrilinosWrappers::SolverDirect>(control);
     solver->initialize(matrix);
     version = level_matrices.coarsest_version();
-    ++factorizations;
   }
 
 

@@ -33,21 +33,13 @@ namespace Friction
     /** c = B_0^{-1} r, with zero in all directions that cannot move. */
     void solve(VectorType &c, const VectorType &r);
 
-    /** The number of factorisations so far. */
-    unsigned int
-    n_factorizations() const
-    {
-      return factorizations;
-    }
-
   private:
     const LevelMatrices<dim>                       &level_matrices;
     TrilinosWrappers::SparseMatrix                  matrix;
     SolverControl                                   control;
     std::unique_ptr<TrilinosWrappers::SolverDirect> solver;
     VectorType                                      rhs;
-    unsigned int                                    version        = 0;
-    unsigned int                                    factorizations = 0;
+    unsigned int                                    version = 0;
 
     void factorize();
 

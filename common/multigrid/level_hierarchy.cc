@@ -2,6 +2,8 @@
 
 #include <deal.II/grid/tria.h>
 
+#include <algorithm>
+
 namespace Friction
 {
   NodeWeights::NodeWeights(const std::vector<std::vector<Entry>> &rows)

@@ -1,6 +1,7 @@
 #include <common/multigrid/level_matrices.h>
 
 #include <algorithm>
+#include <initializer_list>
 
 namespace Friction
 {
@@ -259,7 +260,12 @@ namespace Friction
           changed_nodes.push_back(node);
     if (changed_nodes.empty())
       return 0;
-    truncation = new_truncation;
+    std::sort(changed_nodes.begin(), changed_nodes.end());
+    changed_nodes.erase(std::unique(changed_nodes.begin(), changed_nodes.end()),
+                        changed_nodes.end());
+    for (const unsigned int node : changed_nodes)
+      truncation.set(
+        node, new_truncation.projector(node), new_truncation.curvature(node));
 
     // A change of the leaf block (i,j) shows in row i, and for j=i in the rows
     // of all neighbours of i, of the level that the block belongs to; from

@@ -45,6 +45,13 @@ namespace Friction
      * block rows that had to be computed. */
     std::size_t update(const Truncation<dim> &truncation);
 
+    /** The truncation that the matrices are up to date with. */
+    const Truncation<dim> &
+    current_truncation() const
+    {
+      return truncation;
+    }
+
     unsigned int
     n_levels() const
     {
@@ -105,8 +112,9 @@ namespace Friction
 
     const NodeWeights &finer_parents(const unsigned int level) const;
 
-    // Calls f(column, w, block) for all contributions w*block to a row, block
-    // being given untruncated as (leaf i, leaf j) or as is.
+    // Calls own_block(column, i, j, position) for the blocks (i,j) of the leaf
+    // matrix that belong to a row of this level, and finer_block(weight,
+    // column, block) for those that come from the next finer level.
     template <typename OwnBlock, typename FinerBlock>
     void for_each_contribution(const unsigned int level,
                                const unsigned int row,

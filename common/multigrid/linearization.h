@@ -4,7 +4,7 @@
 #include <common/contact/contact_boundary.h>
 #include <common/contact/contact_state.h>
 #include <common/multigrid/truncation.h>
-#include <common/solvers/settings.h>
+#include <common/scene/solver_settings.h>
 
 namespace Friction
 {

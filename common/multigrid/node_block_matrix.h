@@ -4,6 +4,7 @@
 #include <common/multigrid/node_block.h>
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace Friction

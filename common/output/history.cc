@@ -100,7 +100,8 @@ namespace Friction
   {
     std::size_t size = scene.size() + parameters.size() + version.size() +
       level_records.size() * sizeof(LevelRecord) +
-      cycle_records.size() * (2 * sizeof(unsigned int) + 4 * sizeof(double));
+      cycle_records.size() * (2 * sizeof(unsigned int) + 4 * sizeof(double)) +
+      outer_records.size() * (sizeof(unsigned int) + sizeof(double));
     for (const ContactLevel &contact : contact_levels)
       size += contact.nodes.size() *
         ((4 * dim + 2) * sizeof(double) + sizeof(unsigned int));

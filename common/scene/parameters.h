@@ -3,7 +3,7 @@
 
 #include <common/scene/input_error.h>
 #include <common/scene/material.h>
-#include <common/solvers/settings.h>
+#include <common/scene/solver_settings.h>
 
 #include <map>
 #include <ostream>

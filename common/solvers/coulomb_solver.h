@@ -51,12 +51,10 @@ namespace Friction
    * Without friction, and with given friction bounds (Tresca), the monotone
    * multigrid iteration does it. Coulomb's law ties the bounds to the normal
    * forces of the solution itself:
-   * <ul>
-   * <li> Algorithm 2 iterates (6.11): solve with given normal forces, take
-   * those of the solution, and so on until they no longer change. <li>
-   * Algorithm 3 lets the leading relaxation use the normal forces of the
-   *      intermediate iterate, and needs no outer iteration.
-   * </ul>
+   * - Algorithm 2 iterates (6.11): solve with given normal forces, take those
+   *   of the solution, and so on until they no longer change.
+   * - Algorithm 3 lets the leading relaxation use the normal forces of the
+   *   intermediate iterate, and needs no outer iteration.
    */
   template <int dim>
   class CoulombSolver

@@ -4,7 +4,7 @@
 #include <common/contact/contact_boundary.h>
 #include <common/contact/nodal_constraints.h>
 #include <common/multigrid/node_block_matrix.h>
-#include <common/solvers/settings.h>
+#include <common/scene/solver_settings.h>
 
 namespace Friction
 {

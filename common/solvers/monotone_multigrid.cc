@@ -1,5 +1,6 @@
 #include <common/solvers/monotone_multigrid.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -126,6 +127,7 @@ namespace Friction
     MultigridResult    result;
     Recombination<dim> recombination(settings.recombined_steps);
     VectorType         residual(u), last_u, last_residual;
+    double             floor_of_norm = 0;
     const bool         update = update_normal_forces && problem.has_friction();
 
     for (unsigned int cycle = 0;; ++cycle)
@@ -149,6 +151,8 @@ namespace Friction
         // norm: A times it is a difference of residuals.
         if (cycle > 0)
           {
+            if (cycle == 1)
+              floor_of_norm = smallest_norm(u);
             double increment = 0, norm = 0;
             for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
               {
@@ -159,7 +163,7 @@ namespace Friction
               }
             CycleInfo &info = result.cycles.back();
             info.increment  = std::sqrt(std::max(0., increment) /
-                                       std::max(norm, smallest_norm(u)));
+                                       std::max(norm, floor_of_norm));
             if (progress)
               progress(cycle, info.increment);
             if (!std::isfinite(info.increment))

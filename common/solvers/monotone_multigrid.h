@@ -5,9 +5,9 @@
 #include <common/multigrid/coarse_cycle.h>
 #include <common/multigrid/linearization.h>
 #include <common/multigrid/monotone_smoother.h>
+#include <common/scene/solver_settings.h>
 #include <common/solvers/discrete_problem.h>
 #include <common/solvers/recombination.h>
-#include <common/solvers/settings.h>
 #include <common/solvers/tresca_functional.h>
 
 #include <functional>
@@ -51,15 +51,13 @@ namespace Friction
 
 
   /**
-   * The monotone multigrid iteration for contact with friction. One step is
-   * composed of five parts:
-   * <ol>
-   * <li> the leading relaxation, MonotoneSmoother,
-   * <li> phases, truncation and constrained Newton terms, Linearization,
-   * <li> the coarse correction, CoarseCycle,
-   * <li> recombination with the last corrections, Recombination
-   * <li> projection and line search, TrescaFunctional,
-   * </ol>
+   * The monotone multigrid iteration for contact with friction. One step runs
+   * - the leading relaxation, MonotoneSmoother,
+   * - phases, truncation and constrained Newton terms, Linearization,
+   * - the coarse correction, CoarseCycle,
+   * - its recombination with the last steps, Recombination,
+   * - projection and line search, TrescaFunctional,
+   *
    * and the relaxation once more, backwards. With given normal forces (Tresca)
    * the energy never increases and the iterates stay admissible.
    */

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 
+#include <algorithm>
 #include <cmath>
 
 namespace Friction
@@ -10,18 +11,6 @@ namespace Friction
   Recombination<dim>::Recombination(const unsigned int n_steps)
     : n_steps(n_steps)
   {}
-
-
-
-  template <int dim>
-  void
-  Recombination<dim>::clear()
-  {
-    last_iterate.reinit(0);
-    last_residual.reinit(0);
-    steps.clear();
-    products.clear();
-  }
 
 
 

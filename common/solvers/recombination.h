@@ -45,9 +45,6 @@ namespace Friction
                          const VectorType      &r,
                          const Truncation<dim> &truncation) const;
 
-    /** Forgets all steps. */
-    void clear();
-
   private:
     const unsigned int     n_steps;
     VectorType             last_iterate, last_residual;

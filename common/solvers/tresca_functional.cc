@@ -7,6 +7,25 @@
 
 namespace Friction
 {
+  namespace
+  {
+    // What rounding may do to gap and displacements at a contact node.
+    template <int dim>
+    double
+    rounding_at(const ContactNode<dim> &node,
+                const VectorType       &u,
+                const VectorType       &v)
+    {
+      double size = std::abs(node.gap);
+      for (unsigned int d = 0; d < dim; ++d)
+        size += std::abs(u.local_element(dim * node.node + d)) +
+          std::abs(v.local_element(dim * node.node + d));
+      return 2e-15 * size;
+    }
+  } // namespace
+
+
+
   template <int dim>
   TrescaFunctional<dim>::TrescaFunctional(const DiscreteProblem<dim> &problem)
     : problem(problem)
@@ -85,7 +104,7 @@ namespace Friction
             for (unsigned int d = 0; d < dim; ++d)
               v.local_element(dim * node.node + d) -=
                 (v_n - room) * node.normal()[d];
-            if (v_n - room > 1e-14 * std::abs(node.gap))
+            if (v_n - room > rounding_at(node, u, v))
               ++n_projected;
           }
       }
@@ -190,11 +209,7 @@ namespace Friction
         // A correction that has been projected uses up its room to the last
         // digit, and at a node in contact both are nothing but rounding of the
         // numbers involved; neither must cut the step.
-        double size = std::abs(node.gap);
-        for (unsigned int d = 0; d < dim; ++d)
-          size += std::abs(u.local_element(dim * node.node + d)) +
-            std::abs(v.local_element(dim * node.node + d));
-        const double rounding = 2e-15 * size;
+        const double rounding = rounding_at(node, u, v);
         const double v_n      = normal_component(node, v);
         const double room = std::max(0., node.gap - normal_component(node, u));
         if (v_n > rounding && v_n * length > room + rounding)

@@ -41,7 +41,8 @@ namespace Friction
      * The exact minimiser of $\hat J(u+\alpha v)$ over $0\le\alpha\le$ @p
      * largest, the obstacle being disregarded. The energy is convex along the
      * line and smooth but for the points where a node changes its direction of
-     * slip, so that safeguarded bisection on the derivative finds it.
+     * slip, so that regula falsi on the derivative, safeguarded by bisection,
+     * finds it.
      *
      * @param slope      $(f - A u)\cdot v$, the decrease of the quadratic part.
      * @param curvature  $v^T A v$.

@@ -66,8 +66,8 @@ namespace Tests
       dof_handler.distribute_dofs(fe);
       dof_handler.distribute_mg_dofs();
       renumber_nodes(dof_handler);
-      IndexSet relevant;
-      DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+      const IndexSet relevant =
+        DoFTools::extract_locally_relevant_dofs(dof_handler);
 
       hanging = Compatibility::make_constraints(
         dof_handler.locally_owned_dofs(), relevant);
@@ -157,8 +157,8 @@ namespace Tests
     void
     assemble(const Scene<dim> &scene)
     {
-      IndexSet relevant;
-      DoFTools::extract_locally_relevant_dofs(dof_handler, relevant);
+      const IndexSet relevant =
+        DoFTools::extract_locally_relevant_dofs(dof_handler);
       DynamicSparsityPattern pattern(relevant);
       DoFTools::make_sparsity_pattern(dof_handler, pattern, hanging, false);
       TrilinosWrappers::SparseMatrix stiffness;

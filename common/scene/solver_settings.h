@@ -1,5 +1,5 @@
-#ifndef friction_solvers_settings_h
-#define friction_solvers_settings_h
+#ifndef friction_scene_solver_settings_h
+#define friction_scene_solver_settings_h
 
 namespace Friction
 {
