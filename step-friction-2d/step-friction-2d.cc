@@ -81,6 +81,17 @@ namespace StepFriction2d
   // $Au-f$ is the nodal force at any node of the body, and the solver simply
   // leaves these components alone. The nodal forces on the contact boundary are
   // the unknowns we care about most.
+  //
+  // What you will not find in this class are the three things that the method
+  // is about, and it is good to know from the start where they are. The
+  // friction cone $|R_T(p)|\le\mathcal F\tau(p)$ is enforced node by node, in
+  // the local problems (6.15) of the leading relaxation. Truncation happens
+  // once per cycle, right after this relaxation, in the residual and the
+  // matrices that the levels below the leaf mesh get to see. And a cycle costs
+  // a fixed number of sweeps over the nodes, with no factorisation but that of
+  // the coarsest mesh. All of it is behind the one call of
+  // <code>CoulombSolver::solve()</code> in the function <code>solve()</code>,
+  // and this is where we explain it.
   template <int dim>
   class ContactProblem
   {
@@ -90,6 +101,9 @@ namespace StepFriction2d
     bool run();
 
   private:
+    // The functions in the order in which they are called. Everything up to
+    // <code>solve()</code> is linear elasticity, plus knowledge of the
+    // obstacle. <code>run()</code> says whether all levels could be solved.
     void make_coarse_mesh();
 
     void setup_system();
@@ -108,30 +122,53 @@ namespace StepFriction2d
 
     void compare_with_exact_solution();
 
+    // What is modelled: the scene file as the user wrote it, and the functions,
+    // boundary ids and obstacle it has been turned into.
     const Parameters parameters;
     const Scene<dim> scene;
 
+    // The finite element space. The element is fixed to $Q_1$, and this is not
+    // for convenience: the argument that a correction stays admissible on finer
+    // levels needs interpolation weights between zero and one, which higher
+    // degrees do not have.
     parallel::distributed::Triangulation<dim> triangulation;
     const MappingQ<dim>                       mapping;
     const FESystem<dim>                       fe;
     DoFHandler<dim>                           dof_handler;
 
+    // The discrete problem, made anew for each mesh. The two kinds of
+    // constraints are in the first two members: hanging nodes as an object of
+    // deal.II, because they are condensed; all that is known about single nodes
+    // before any contact, prescribed components among it, as an object of our
+    // own.
     AffineConstraints<double>              hanging_node_constraints;
     std::unique_ptr<NodalConstraints<dim>> nodal_constraints;
     std::unique_ptr<ContactBoundary<dim>>  contact_boundary;
     NodeBlockMatrix<dim>                   stiffness;
     VectorType                             forces;
 
+    // The solution on the present mesh. Besides $u$ it includes the contact
+    // state: flags that say which nodes touch and which of these stick, and the
+    // nodal normal forces $\tau(p)$. They are not derived from $u$ but set by
+    // the local problems, for after a rotation to the frame of a node and back
+    // $u_n=g$ holds only up to rounding. The tractions, $R(p)/m_p$ at the nodes
+    // in contact, are what the next mesh, the estimator and ParaView get to see
+    // of the forces.
     VectorType                    displacement;
     VectorType                    tractions;
     std::unique_ptr<ContactState> state;
     SolverReport                  report;
 
+    // Where results go. The order matters: the directory is created first, so
+    // that a run which cannot write anything fails in its first second and not
+    // after its last level.
     RunDirectory     directory;
     Console          console;
     History<dim>     history;
     FieldWriter<dim> fields;
 
+    // Wall times of the present level. What is done once per mesh and what the
+    // iteration takes are counted separately.
     double setup_seconds    = 0.;
     double solve_seconds    = 0.;
     double last_exact_error = 0.;
@@ -211,11 +248,19 @@ namespace StepFriction2d
     const IndexSet  relevant =
       DoFTools::extract_locally_relevant_dofs(dof_handler);
 
+    // The first kind of constraints: hanging nodes, and nothing else. They go
+    // to the assembly below, where the rows and columns of these nodes are
+    // distributed to their masters. In two dimensions none of them lies on
+    // $\Gamma_S$; in three, one that does has no law of its own.
     hanging_node_constraints = Compatibility::make_constraints(owned, relevant);
     DoFTools::make_hanging_node_constraints(dof_handler,
                                             hanging_node_constraints);
     hanging_node_constraints.close();
 
+    // The second kind: prescribed displacements. An object of the same class is
+    // used to collect them, because <code>interpolate_boundary_values</code>
+    // wants one, but it is never used for eliminating anything and does not
+    // outlive this function.
     AffineConstraints<double> prescribed =
       Compatibility::make_constraints(owned, relevant);
     for (const auto &condition : scene.dirichlet_conditions())
@@ -227,7 +272,10 @@ namespace StepFriction2d
                                                condition.components);
 
     // A scene may pin single vertices, to keep a body that is only pushed from
-    // drifting away.
+    // drifting away: contact can hold it from one side only, and friction does
+    // so only where it sticks, which nobody knows yet. The matrix has to be
+    // positive definite without their help. Where a boundary condition
+    // prescribes the same component already, it takes precedence.
     for (const auto &pinned : scene.pinned_points())
       for (const auto &cell : dof_handler.active_cell_iterators())
         if (!cell->is_artificial())
@@ -244,12 +292,27 @@ namespace StepFriction2d
               }
     prescribed.close();
 
+    // From here on we think in nodes. <code>NodalConstraints</code> keeps, for
+    // each node, whether it hangs and which of its components are prescribed,
+    // and it owns the layout of all vectors on the leaf mesh: node $i$ has the
+    // local indices $di,\dots,di+d-1$.
     nodal_constraints = std::make_unique<NodalConstraints<dim>>(
       dof_handler, hanging_node_constraints, prescribed);
 
     // Now for contact. The obstacle is rigid and known, so that all there is to
     // know about it are the nodes of the body that may touch it, the direction
     // in which each of them would do so, and how far it is away: the gap.
+    // Displacements are supposed to be small: normals and gaps are those of the
+    // undeformed body.
+    //
+    // Each contact node also gets the boundary measure that it stands for,
+    // $m_p=\int_{\Gamma_S}\lambda_p$. This is where the dual multipliers are,
+    // as far as a program has to know about them. Because of biorthogonality
+    // (6.9) the coefficients of the boundary stress are nodal forces, and
+    // friction is a sum over nodes (6.17); there is no mass matrix on the
+    // boundary to assemble, and no multiplier among the unknowns. The solver
+    // itself does not even need $m_p$. It is what turns forces into stresses,
+    // for whoever wants those.
     contact_boundary =
       std::make_unique<ContactBoundary<dim>>(mapping,
                                              dof_handler,
@@ -276,6 +339,9 @@ namespace StepFriction2d
   void
   ContactProblem<dim>::assemble_system()
   {
+    // The sparsity pattern knows about hanging nodes but not about prescribed
+    // displacements, whose rows and columns we keep. The pattern is needed once
+    // more at the end of this function and must live until then.
     const IndexSet relevant =
       DoFTools::extract_locally_relevant_dofs(dof_handler);
     DynamicSparsityPattern pattern(relevant);
@@ -290,6 +356,8 @@ namespace StepFriction2d
                   Compatibility::mpi_communicator(dof_handler));
     forces.reinit(nodal_constraints->partitioner());
 
+    // For the stiffness, two quadrature points per direction are enough. Given
+    // tractions are arbitrary expressions from a scene file and get some more.
     const QGauss<dim>     quadrature(fe.degree + 1);
     const QGauss<dim - 1> face_quadrature(fe.degree + 3);
     FEValues<dim>         fe_values(mapping,
@@ -348,6 +416,8 @@ namespace StepFriction2d
                 }
             }
 
+          // What the obstacle exerts is not among the loads. It is a reaction,
+          // and will be found in $Au-f$.
           for (const unsigned int f : cell->face_indices())
             for (const auto &condition : scene.traction_conditions())
               if (cell->face(f)->at_boundary() &&
@@ -365,6 +435,10 @@ namespace StepFriction2d
                     }
                 }
 
+          // Hanging nodes are condensed in the matrix and in the loads alike.
+          // If we had passed on prescribed displacements as well, as step-40
+          // does, their rows would now be gone, and with them the reactions at
+          // the nodes that are held.
           cell->get_dof_indices(dof_indices);
           hanging_node_constraints.distribute_local_to_global(
             cell_matrix, cell_forces, dof_indices, matrix, forces);
@@ -372,6 +446,8 @@ namespace StepFriction2d
     matrix.compress(VectorOperation::add);
     forces.compress(VectorOperation::add);
 
+    // Trilinos has done its part; its matrix ends with this function. The copy
+    // in $d\times d$ blocks has all that relaxing a node needs in one place.
     stiffness =
       make_node_block_matrix<dim>(matrix, pattern, *nodal_constraints);
   }
@@ -394,8 +470,51 @@ namespace StepFriction2d
   //   last step (<code>Recombination</code>);
   // - the energy that all of them agree on (<code>TrescaFunctional</code>).
   //
+  // <i>Where is the friction cone?</i> In the first part, and nowhere else.
+  // When its turn comes, a contact node gets the displacement that minimises
+  // the energy with all other nodes held, (6.15). The local problem first tries
+  // to leave the obstacle; if it cannot, it puts $u_n=g$ and compares the
+  // tangential force that would hold the node at $u_T=0$ with $\mathcal
+  // F\tau(p)$. Below the bound the node sticks. Otherwise it slides, with the
+  // force equal to the bound, (6.18). So right after its turn a node satisfies
+  // its law, with this $\tau(p)$, exactly, and violates it again as soon as a
+  // neighbour moves. With Algorithm 3 the bound itself, $\tau(p)$, is taken
+  // from the intermediate iterate just before the node is relaxed, (6.19). With
+  // Algorithm 2 it is fixed, and the whole iteration described here is repeated
+  // with the forces it has found until they agree with those it was given,
+  // (6.11).
+  //
+  // <i>Where is truncation?</i> Between relaxation and coarse correction, at
+  // the smoothed iterate. The phase of a node decides which directions $T_p$
+  // are left to coarse functions: all at an open node, the tangent at a sliding
+  // one, none at a sticking one. On these the energy is smooth, and coarse
+  // levels solve the linear problem with the matrix $TAT$ (in two dimensions
+  // friction adds nothing to it, for $|u_T|$ is piecewise linear).
+  // Interpolation between levels is never truncated. The bounds (6.12) on
+  // coarse corrections are used by the <code>monotone</code> variant only; by
+  // default a correction may be as large as it likes, and the line search deals
+  // with it.
+  //
+  // <i>What does a cycle cost?</i> By default
+  // - three forward and three backward sweeps over the leaf mesh, contact nodes
+  //   included, whose local problems are two scalar equations at most;
+  // - one residual and one product with the matrix, for the line search; a
+  //   second product if the obstacle cuts the correction off;
+  // - six and six sweeps on the levels below. Only nodes that touch a refined
+  //   cell are relaxed there, and in two dimensions there is less than one
+  //   refined cell for three active ones, so that all of this is worth about
+  //   four sweeps over the leaf mesh;
+  // - rows of level matrices near nodes whose phase has changed, which after a
+  //   few cycles is nowhere, and a direct solution on the coarsest mesh.
+  //
+  // That is linear in the number of unknowns, provided the coarsest mesh is
+  // small and the cycle a V-cycle; W-cycles are not affordable on meshes
+  // refined towards a small zone. How many cycles it takes is another question,
+  // to which we have measurements, see the results, but no theorem. For
+  // Algorithm 3 not even convergence is proved.
+  //
   // The coefficient of friction of Tresca's law is absorbed in the given
-  // bounds.
+  // bounds, hence the 1 in the problem's last entry.
   template <int dim>
   void
   ContactProblem<dim>::solve(const unsigned int level)
@@ -412,13 +531,20 @@ namespace StepFriction2d
       tresca ? 1. : scene.friction_coefficient()};
 
     // The initial guess: what the coarser mesh has found, made admissible on
-    // this one.
+    // this one. Prescribed values are set, nodes that are inside the obstacle
+    // are moved back along their normals, and the normal part of each traction
+    // times $m_p$ becomes the force $\tau(p)$ that friction starts with. On the
+    // first mesh everything is zero, and there is no friction before the first
+    // normal force.
     state = std::make_unique<ContactState>(
       make_initial_guess(displacement,
                          tractions,
                          *nodal_constraints,
                          *contact_boundary,
                          problem.has_friction()));
+    // With Tresca's law there is nothing to be guessed. The scene gives the
+    // largest tangential stress, which times $m_p$ is the bound in (6.17). It
+    // acts at all nodes of $\Gamma_S$, at open ones, too.
     if (tresca)
       for (unsigned int p = 0; p < contact_boundary->size(); ++p)
         state->set_normal_force(
@@ -426,6 +552,17 @@ namespace StepFriction2d
           (*contact_boundary)[p].measure *
             scene.friction_bound()->value((*contact_boundary)[p].point));
 
+    // What the constructor does is done once per mesh, so that we count it as
+    // setup. The iteration stops when the increment over a cycle, in the energy
+    // norm and relative to $u$, is at most the inner tolerance; the outer
+    // tolerance is about $\tau$ in Algorithm 2. Increments prove little, for a
+    // method that stalls has small ones as well. So the solver then computes
+    // $f-Au$ from scratch and with it the <i>certificate</i>: by how much any
+    // node violates equilibrium, non-penetration, the sign of the normal force,
+    // complementarity, the friction cone, or the direction of slip, forces
+    // relative to the largest nodal force and lengths to the largest
+    // displacement or gap. Without a small certificate
+    // <code>report.converged</code> is false.
     CoulombSolver<dim> solver(
       dof_handler, hierarchy, problem, parameters.solver);
     setup_seconds += timer.wall_time();
@@ -439,6 +576,12 @@ namespace StepFriction2d
                    });
     solve_seconds = timer.wall_time();
 
+    // The iteration has not touched the values at hanging nodes, which we now
+    // interpolate. The contact tractions are $R(p)/m_p=-r(p)/m_p$ with $r=f-Au$
+    // the residual, at nodes where the state says that something is
+    // transferred, and exactly zero elsewhere; what rounding leaves of $r$ at
+    // open nodes must not look like a stress. Note that this is not
+    // $\sigma(u_h)n$, which jumps from cell to cell and is less accurate.
     hanging_node_constraints.distribute(displacement);
     displacement.update_ghost_values();
     tractions = contact_tractions(
@@ -453,7 +596,10 @@ namespace StepFriction2d
 
   // On the contact boundary the estimator compares the stress of the finite
   // element solution with the contact tractions, which are known much better;
-  // elsewhere it is the usual residual estimator of elasticity.
+  // elsewhere it is the usual residual estimator of elasticity, with residuals
+  // in the cells, jumps of the stress across faces, and the mismatch to given
+  // tractions. For Coulomb friction this is a guide and not a theorem: the
+  // proofs that we rely on are for contact without friction.
   template <int dim>
   ErrorEstimate
   ContactProblem<dim>::estimate_error() const
@@ -469,6 +615,13 @@ namespace StepFriction2d
     for (const auto &condition : scene.dirichlet_conditions())
       problem.dirichlet[condition.boundary_id] = condition.components;
 
+    // Between the nodes the laws of contact hold only approximately. To measure
+    // this, the estimator needs normals and gaps as fields on $\Gamma_S$: the
+    // distance that is left where there is pressure, and the work of friction
+    // that is missing where something slides. The field of gaps is that of the
+    // vectors $g(p)\,n(p)$, which can be interpolated like displacements. The
+    // work is that of Coulomb's law; for Tresca's the coefficient is zero here,
+    // and this one term is left out.
     VectorType normal(nodal_constraints->partitioner());
     VectorType gap_vector(nodal_constraints->partitioner());
     for (const ContactNode<dim> &node : *contact_boundary)
@@ -509,9 +662,17 @@ namespace StepFriction2d
         triangulation.set_all_refine_flags();
         return true;
       }
+    // All cells are marked whose indicator is at least a given fraction of the
+    // largest. There is no coarsening, so that interpolation to the next mesh
+    // loses nothing. If there is no error at all, nothing is marked and the run
+    // is complete.
     const bool any_marked = mark_by_maximum(triangulation,
                                             estimate.cell_errors,
                                             parameters.refinement.marking) > 0;
+    // Optionally, every cell at the boundary with a vertex in contact is
+    // refined besides. The zone of contact then has the same mesh width all
+    // over, at a price: this is not optimal for the energy, and the mesh gets
+    // coarse so quickly with depth that the pressure carries a slight ripple.
     if (parameters.refinement.contact_zone)
       {
         std::vector<bool> touches(nodal_constraints->n_nodes(), false);
@@ -534,7 +695,13 @@ namespace StepFriction2d
   // Nested iteration: the displacement and the contact tractions are
   // interpolated to the refined mesh as they are. Tractions rather than nodal
   // forces, because a force belongs to a mesh, and halves when the mesh is
-  // refined.
+  // refined. The flags of contact and stick are not transferred: a node that
+  // has come to lie at the obstacle or inside starts in contact, and the first
+  // sweep decides anew.
+  //
+  // The guess is worth having: with it Algorithm 2 starts with a small first
+  // change of the forces, and the number of cycles does not grow with the
+  // level.
   template <int dim>
   void
   ContactProblem<dim>::refine_mesh()
@@ -551,6 +718,10 @@ namespace StepFriction2d
     setup_system();
     setup_seconds = timer.wall_time();
 
+    // Everything about the old mesh has been replaced; only the two vectors
+    // arrive. They are not admissible yet, since new nodes on $\Gamma_S$ have
+    // gaps of their own, and prescribed values need not be linear between old
+    // nodes. <code>solve()</code> takes care of that.
     displacement.reinit(nodal_constraints->partitioner());
     tractions.reinit(nodal_constraints->partitioner());
     std::vector<VectorType *> new_vectors = {&displacement, &tractions};
@@ -562,12 +733,27 @@ namespace StepFriction2d
   // @sect4{ContactProblem::record_level}
 
   // What is known at the end of a level: for the table on the console, for
-  // <code>history.h5</code> which scripts can read, and for ParaView.
+  // <code>history.h5</code> which scripts can read, and for ParaView. A level
+  // that has not converged is recorded as well, for one wants to see what it
+  // looks like.
   template <int dim>
   void
   ContactProblem<dim>::record_level(const unsigned int   level,
                                     const ErrorEstimate &estimate)
   {
+    // First the numbers of the level.
+    // - <code>contact_nodes</code> and <code>sticky_nodes</code> count flags of
+    //   the state, and are what table 6.1 of the thesis lists;
+    // - <code>cycles</code> counts multigrid cycles of all outer iterations;
+    //   there is one outer iteration unless Algorithm 2 is used;
+    // - <code>contraction</code> is the geometric mean, per cycle, by which
+    //   increments shrink;
+    // - <code>energy</code> is $\hat J(u)$ of (6.8) at the final $\tau$. As
+    //   $\tau$ and the shape of the body differ from mesh to mesh, it need not
+    //   fall with the level;
+    // - <code>rho_tau</code> exists in the two versions that the introduction
+    //   mentions, and is zero for Algorithm 3;
+    // - <code>certificate</code> is the largest of its six violations.
     LevelRecord record;
     record.level               = level;
     record.cells               = triangulation.n_global_active_cells();
@@ -585,6 +771,10 @@ namespace StepFriction2d
     record.setup_seconds       = setup_seconds;
     record.solve_seconds       = solve_seconds;
 
+    // Then the contact boundary, one row per node. The solver's residual is
+    // $f-Au$, so that the force of the obstacle on the body, $R=Au-f$, is its
+    // negative. Its normal part points into the body, and $\tau(p)=-R(p)\cdot
+    // n(p)$ is positive.
     std::vector<ContactRecord<dim>> contact;
     Tensor<1, dim>                  tangential_force;
     for (unsigned int p = 0; p < contact_boundary->size(); ++p)
@@ -606,6 +796,13 @@ namespace StepFriction2d
         row.state = !state->in_contact(p) ? 0 : state->sticks(p) ? 2 : 1;
         contact.push_back(row);
 
+        // From the rows we sum up. The pressure at a node is its normal force
+        // over $m_p$. Half-widths are half the sum of $m_p$ over the nodes in
+        // contact, or sticking: lengths, in two dimensions, and sensible only
+        // if the zone is connected. The edge of a zone is not known better than
+        // to a cell. The tangential force is a sum of <i>vectors</i>: where a
+        // scene is symmetric, the two halves cancel, and a value near zero does
+        // not mean that there is no friction.
         const double normal_force = -row.force * row.normal;
         tangential_force += row.force + normal_force * row.normal;
         if (row.state > 0)
@@ -620,6 +817,13 @@ namespace StepFriction2d
       }
     record.tangential_force = tangential_force.norm();
 
+    // How the iteration went, cycle by cycle: relative increment, energy of the
+    // smoothed iterate, step length of the coarse correction (which may exceed
+    // one), number of components that truncation has taken from coarse
+    // functions, and norm of the truncated residual. Within one Tresca problem
+    // the energy must never rise. With Algorithm 3 it may, as $\tau$ and with
+    // it the functional changes. Once phases have settled, the number of
+    // truncated components is constant, and the iteration is linear.
     std::vector<CycleRecord> cycles;
     for (const CycleInfo &info : report.cycles)
       {
@@ -633,6 +837,7 @@ namespace StepFriction2d
         cycles.push_back(row);
       }
 
+    // For Algorithm 2, the relative changes $\varepsilon^k$ of $\tau$.
     std::vector<OuterRecord> outer;
     for (const double change : report.outer_changes)
       {
@@ -642,6 +847,8 @@ namespace StepFriction2d
         outer.push_back(row);
       }
 
+    // The history is rewritten as a whole after each level and put in place by
+    // renaming. A run that is killed leaves all levels that were complete.
     console.level_complete(record);
     history.add_level(record, cycles, contact, outer);
     if (parameters.output.fields)
@@ -677,6 +884,10 @@ namespace StepFriction2d
     std::vector<SymmetricTensor<2, dim>> strains(quadrature.size());
     Vector<double>                       value(dim);
 
+    // The loop computes $\|u-u_h\|_a$, and on the way the largest error at a
+    // node, relative to the largest displacement. The latter is for patch
+    // tests, whose solution is linear: there a method without penalty is exact
+    // up to rounding and the tolerance of the solver.
     double energy_error = 0, node_error = 0, node_size = 0;
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
@@ -732,8 +943,13 @@ namespace StepFriction2d
   // @sect4{ContactProblem::run}
 
   // The loop over levels. It ends when the mesh is fine enough, or when a level
-  // could not be solved: then the certificate says by how much its best iterate
+  // could not be solved: then the certificate says by how much its last iterate
   // violates which law, and the program must not pretend otherwise.
+  //
+  // Before it starts, we compare the coefficient of friction with Eck's bound.
+  // Above it we do not give up, since in practice many scenes have a solution
+  // there. But this is not known, and if there are several, another algorithm
+  // or another initial guess may legitimately lead elsewhere.
   template <int dim>
   bool
   ContactProblem<dim>::run()
@@ -752,6 +968,8 @@ namespace StepFriction2d
         console.warning(text.str());
       }
 
+    // The first guess is the undeformed body without any forces; on a coarse
+    // mesh that is good enough.
     make_coarse_mesh();
     Timer timer;
     setup_system();
@@ -766,6 +984,9 @@ namespace StepFriction2d
         setup_seconds += timer.wall_time();
         solve(level);
 
+        // The estimate is needed for adaptive refinement, except on the last
+        // level. By default it is computed there, too, because one wants to
+        // know the error of what one has got.
         const bool last = level >= parameters.refinement.levels ||
           dof_handler.n_dofs() >= parameters.refinement.maximum_dofs;
         const bool adaptive =
@@ -778,6 +999,10 @@ namespace StepFriction2d
         if (scene.exact_displacement() != nullptr)
           compare_with_exact_solution();
 
+        // A level without a certified solution is the end: what is wrong on
+        // this mesh would only be interpolated to the next one. The certificate
+        // tells which law is violated. If $\mathcal F$ is large, Algorithm 2
+        // with <code>Outer damping</code> below one may still converge.
         if (!report.converged)
           {
             console.note(
@@ -799,6 +1024,11 @@ namespace StepFriction2d
 
 // A scene file, then entries of it that are to be different this time. Whatever
 // is wrong with them is said in one sentence, without a stack trace.
+//
+// The exit status is part of the result. Zero means that all levels have been
+// solved and certified. One means that some level has not; its results are
+// there to be looked at, but not to be believed. Two means that the input was
+// at fault, three is for what should never happen.
 int
 main(int argc, char *argv[])
 {
@@ -835,6 +1065,9 @@ main(int argc, char *argv[])
           print_default_parameters(std::cout);
           return 0;
         }
+      // The data structures are those of a parallel program, but the solver
+      // does not yet exchange values between processes. Rather than compute
+      // something that looks plausible we refuse.
       if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
         {
           if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
@@ -845,6 +1078,9 @@ main(int argc, char *argv[])
           return 2;
         }
 
+      // The scene is read and checked before anything is created. What follows
+      // is for any dimension as far as this file is concerned; the local
+      // problems in the library exist in two dimensions only.
       const Parameters parameters =
         read_parameters(arguments[0], {arguments.begin() + 1, arguments.end()});
       StepFriction2d::ContactProblem<2> problem(parameters, std::cout);
