@@ -1,0 +1,315 @@
+#include <common/scene/parameter_entries.h>
+
+namespace Friction
+{
+  using namespace dealii;
+
+  namespace
+  {
+    template <typename Pattern>
+    std::shared_ptr<Patterns::PatternBase>
+    make(const Pattern &pattern)
+    {
+      return pattern.clone();
+    }
+  } // namespace
+
+
+
+  const std::vector<ParameterEntry> &
+  parameter_entries()
+  {
+    const auto text     = make(Patterns::Anything());
+    const auto number   = make(Patterns::Double());
+    const auto positive = make(Patterns::Double(1e-300));
+    const auto steps    = make(Patterns::Integer(1));
+    const auto flag     = make(Patterns::Bool());
+    const auto choice   = [](const std::string &choices) {
+      return make(Patterns::Selection(choices));
+    };
+
+    static const std::vector<ParameterEntry> table = {
+      {"Scene",
+       "Geometry",
+       "rectangle",
+       choice("half disc|rectangle|mesh file"),
+       "The body. 'half disc': centre at the origin, flat top y=0, boundary "
+       "ids 0 (arc) and 1 (flat top). 'rectangle': [0,L]x[0,H], boundary ids "
+       "0 (left), 1 (right), 2 (bottom), 3 (top); a box in 3D, with 2, 3 in "
+       "y direction and 4, 5 in z direction. 'mesh file': physical ids are "
+       "the boundary ids."},
+      {"Scene",
+       "Size",
+       "1, 1",
+       text,
+       "Edge lengths of the rectangle, one per dimension; constant "
+       "expressions [length]."},
+      {"Scene",
+       "Subdivisions",
+       "1, 1",
+       text,
+       "Number of coarse cells of the rectangle, one per dimension."},
+      {"Scene", "Radius", "1", positive, "Radius of the half disc [length]."},
+      {"Scene",
+       "Mesh file",
+       "",
+       text,
+       "Mesh in Gmsh's .msh format, quadrilaterals or hexahedra; a relative "
+       "path starts at the folder of the scene file."},
+      {"Scene",
+       "Distortion",
+       "0",
+       make(Patterns::Double(0., .4)),
+       "Move interior vertices of the coarse rectangle by up to this "
+       "fraction "
+       "of a coarse cell in a random, reproducible direction."},
+      {"Scene",
+       "Rotation angle",
+       "0",
+       number,
+       "Turn everything, mesh, obstacle, loads and prescribed displacements, "
+       "by this angle around the origin [degrees]."},
+      {"Scene",
+       "Constants",
+       "",
+       text,
+       "Numbers with a name, for use in expressions: 'a = 1; b = 2*a'. E, "
+       "nu, "
+       "lambda, mu (material), F (friction coefficient) and pi are "
+       "there already."},
+      {"Scene",
+       "Definitions",
+       "",
+       text,
+       "Expressions with a name, which may use the coordinates, the "
+       "constants and the definitions before them: 'r = sqrt(x^2+y^2)'."},
+      {"Scene",
+       "Exact displacement",
+       "",
+       text,
+       "The solution if it is known, to report errors: one expression per "
+       "component, separated by commas [length]."},
+
+      {"Material",
+       "Young's modulus",
+       "1",
+       number,
+       "Positive [stress]. The body is isotropic; in 2D plane strain."},
+      {"Material", "Poisson ratio", "0.3", number, "Between -1 and 1/2."},
+
+      {"Obstacle",
+       "Kind",
+       "none",
+       choice("none|plane|rods"),
+       "The rigid obstacle: a half space, or circular rods (discs in 2D)."},
+      {"Obstacle",
+       "Point",
+       "0, 0",
+       text,
+       "A point of the plane; constant expressions [length]."},
+      {"Obstacle",
+       "Normal",
+       "0, -1",
+       text,
+       "Normal of the plane, into the obstacle, of any length."},
+      {"Obstacle",
+       "Centers",
+       "",
+       text,
+       "A point on the axis of each rod, separated by ';' [length]."},
+      {"Obstacle",
+       "Axes",
+       "",
+       text,
+       "3D: direction of the axis of each rod, separated by ';'."},
+      {"Obstacle", "Radius", "1", positive, "Of the rods [length]."},
+
+      {"Boundary conditions",
+       "Displacement",
+       "",
+       text,
+       "Prescribed displacements, 'id: u_x, u_y', separated by ';'. Each "
+       "component is an expression in x, y (and z), or 'free' [length]."},
+      {"Boundary conditions",
+       "Traction",
+       "",
+       text,
+       "Boundary stresses, 'id: t_x, t_y', separated by ';' [stress]."},
+      {"Boundary conditions",
+       "Pinned points",
+       "",
+       text,
+       "Displacements prescribed in single vertices, '(x, y): u_x, u_y', "
+       "separated by ';', a component being constant or 'free' [length]."},
+      {"Boundary conditions",
+       "Body force",
+       "",
+       text,
+       "Force per volume, one expression per component, separated by commas "
+       "[stress/length]."},
+
+      {"Contact",
+       "Boundary id",
+       "-1",
+       make(Patterns::Integer(-1)),
+       "The part of the boundary that may touch the obstacle; -1 for none."},
+      {"Contact",
+       "Friction law",
+       "Coulomb",
+       choice("none|Tresca|Coulomb"),
+       "'Tresca': the bound of the tangential stress is given. 'Coulomb': it "
+       "is the friction coefficient times the normal stress."},
+      {"Contact",
+       "Friction coefficient",
+       "0",
+       number,
+       "Of Coulomb's law; with 0 nothing of friction is computed."},
+      {"Contact",
+       "Friction bound",
+       "0",
+       text,
+       "Of Tresca's law: the largest tangential stress, an expression "
+       "[stress]."},
+      {"Contact",
+       "Contact normal",
+       "body",
+       choice("body|obstacle"),
+       "Direction in which the gap is measured: the outward normal of the "
+       "body, or straight towards the obstacle."},
+
+      {"Refinement",
+       "Strategy",
+       "uniform",
+       choice("uniform|adaptive"),
+       "How the mesh is refined from level to level."},
+      {"Refinement",
+       "Initial refinements",
+       "0",
+       make(Patterns::Integer(0, 15)),
+       "Uniform refinements of the coarse mesh before the first solution."},
+      {"Refinement",
+       "Levels",
+       "0",
+       make(Patterns::Integer(0, 25)),
+       "Number of refinements after that, with a solution on each mesh."},
+      {"Refinement",
+       "Maximum dofs",
+       "10000000",
+       steps,
+       "Stop refining when a mesh has this many degrees of freedom."},
+      {"Refinement",
+       "Marking",
+       "0.5",
+       make(Patterns::Double(0., 1.)),
+       "Adaptive: refine cells with at least this fraction of the largest "
+       "error indicator."},
+      {"Refinement",
+       "Contact zone",
+       "false",
+       flag,
+       "Adaptive: besides what the estimator marks, refine every cell whose "
+       "boundary is in contact, so that the contact stresses are resolved "
+       "equally well everywhere."},
+      {"Refinement",
+       "Estimate error",
+       "true",
+       flag,
+       "Whether to estimate the error also where refinement does not need "
+       "it."},
+
+      {"Solver",
+       "Algorithm",
+       "Gauss-Seidel like",
+       choice("fixed point|Gauss-Seidel like"),
+       "How the normal stress in Coulomb's law is found: in an outer "
+       "iteration (Algorithm 2), or within the relaxation (Algorithm 3)."},
+      {"Solver",
+       "Coarse correction",
+       "truncated",
+       choice("truncated|monotone"),
+       "'truncated': unconstrained, with a line search. 'monotone': within "
+       "coarse obstacles."},
+      {"Solver", "Cycle", "V", choice("V|W"), "Kind of the multigrid cycle."},
+      {"Solver",
+       "Smoothing steps",
+       "3",
+       steps,
+       "Relaxation sweeps on the leaf mesh, before and after the "
+       "coarse correction."},
+      {"Solver",
+       "Coarse smoothing steps",
+       "6",
+       steps,
+       "The same on the correction levels."},
+      {"Solver",
+       "Truncation",
+       "phases",
+       choice("phases|contact|phases without second order"),
+       "What coarse functions lose at a node in contact: what its phase "
+       "fixes, everything, or the former without the second derivative "
+       "of friction."},
+      {"Solver",
+       "Inner tolerance",
+       "1e-9",
+       positive,
+       "Relative increment that stops the multigrid iteration."},
+      {"Solver",
+       "Outer tolerance",
+       "2e-7",
+       positive,
+       "Relative change of the normal forces that stops the outer "
+       "iteration."},
+      {"Solver",
+       "Certificate tolerance",
+       "1e-6",
+       positive,
+       "Largest residual of the discrete law of a valid solution, relative "
+       "to the largest nodal force or gap."},
+      {"Solver",
+       "Maximum cycles",
+       "200",
+       steps,
+       "Give up after this many multigrid cycles on a level."},
+      {"Solver",
+       "Maximum outer iterations",
+       "50",
+       steps,
+       "Give up after this many outer iterations on a level."},
+      {"Solver",
+       "Maximum damping",
+       "2",
+       positive,
+       "Largest step length of the line search."},
+      {"Solver",
+       "Recombined steps",
+       "1",
+       make(Patterns::Integer(0, 20)),
+       "Number of previous steps that a truncated coarse correction is "
+       "recombined with; 0 for none."},
+      {"Solver",
+       "Outer damping",
+       "1",
+       make(Patterns::Double(1e-3, 1.)),
+       "Damping of the outer iteration; 1 is undamped."},
+
+      {"Output",
+       "Directory",
+       "output",
+       text,
+       "Where results go; it is created."},
+      {"Output", "Fields", "true", flag, "Whether to write fields."},
+      {"Output",
+       "Times",
+       "true",
+       flag,
+       "Whether the console shows what depends on the clock: seconds and "
+       "progress."},
+      {"Output",
+       "Verbosity",
+       "cycles",
+       choice("quiet|levels|cycles"),
+       "What the console shows: only warnings, a row per level, and progress "
+       "inside the levels."}};
+    return table;
+  }
+} // namespace Friction
