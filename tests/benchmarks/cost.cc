@@ -98,8 +98,7 @@ namespace Benchmark
 
   template <int dim>
   double
-  sweep_bandwidth(const Discretization<dim>  &discretization,
-                  const DiscreteProblem<dim> &problem,
+  sweep_bandwidth(const DiscreteProblem<dim> &problem,
                   const VectorType           &solution,
                   const ContactState         &solution_state)
   {
@@ -119,7 +118,6 @@ namespace Benchmark
       A.n_rows() *
         (sizeof(std::size_t) + dim * dim * sizeof(double) +
          3 * dim * sizeof(double));
-    (void)discretization;
     return bytes / seconds;
   }
 
@@ -209,9 +207,8 @@ namespace Benchmark
           linear.seconds,
           friction.seconds / linear.seconds);
         if (n_dofs > 200000)
-          std::printf(
-            " %4.0f%%\n",
-            100. * sweep_bandwidth(*discretization, problem, u, state) / triad);
+          std::printf(" %4.0f%%\n",
+                      100. * sweep_bandwidth(problem, u, state) / triad);
         else
           std::printf("\n");
         std::fflush(stdout);
