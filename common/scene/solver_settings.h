@@ -44,6 +44,16 @@ namespace Friction
   };
 
   /**
+   * How the direction of slip is found in the local problems of three
+   * dimensions; in two there are but two directions to choose from.
+   */
+  enum class LocalSolver
+  {
+    secular_equation, ///< one scalar equation for the amount of slip
+    uzawa             ///< the thesis's iteration for the tangential force
+  };
+
+  /**
    * Everything that can be chosen about the nonlinear solver. The defaults are
    * those of the step programs' parameter files.
    */
@@ -53,6 +63,7 @@ namespace Friction
     CoarseCorrection  coarse_correction = CoarseCorrection::truncated;
     Cycle             cycle             = Cycle::V;
     TruncationVariant truncation        = TruncationVariant::phases;
+    LocalSolver       local_solver      = LocalSolver::secular_equation;
 
     /// Relaxation sweeps on the leaf mesh before and after the coarse
     /// correction.
