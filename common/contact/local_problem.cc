@@ -1,60 +1,94 @@
 #include <common/contact/local_problem.h>
 
-#include <cmath>
-
 namespace Friction
 {
   namespace
   {
-    // The minimiser of  a z^2 / 2 - b z + s |z|.
-    inline double
-    shrink(const double a, const double b, const double s)
+    // The tangential part of a block.
+    template <int dim>
+    std::array<double, (dim - 1) * (dim - 1)>
+    tangential_block(const std::array<double, dim * dim> &a)
     {
-      if (std::abs(b) <= s)
-        return 0.;
-      return (b > 0 ? b - s : b + s) / a;
+      std::array<double, (dim - 1) * (dim - 1)> result;
+      for (unsigned int c = 1; c < dim; ++c)
+        for (unsigned int r = 1; r < dim; ++r)
+          result[(c - 1) * (dim - 1) + r - 1] = a[c * dim + r];
+      return result;
+    }
+
+
+
+    // The same for a normal displacement that follows without any force, the
+    // Schur complement.
+    template <int dim>
+    std::array<double, (dim - 1) * (dim - 1)>
+    schur_complement(const std::array<double, dim * dim> &a)
+    {
+      std::array<double, (dim - 1) * (dim - 1)> result =
+        tangential_block<dim>(a);
+      for (unsigned int c = 1; c < dim; ++c)
+        for (unsigned int r = 1; r < dim; ++r)
+          result[(c - 1) * (dim - 1) + r - 1] -= a[r] * a[c] / a[0];
+      return result;
     }
   } // namespace
 
 
 
-  template <>
-  LocalProblem<2>::LocalProblem(const std::array<double, 4> &block,
-                                const double                 gap,
-                                const unsigned int           n_free_tangents)
-    : a(block)
+  template <int dim>
+  LocalProblem<dim>::LocalProblem(const std::array<double, dim * dim> &block,
+                                  const double                         gap,
+                                  const unsigned int n_free_tangents,
+                                  const LocalSolver  solver)
+    : a_nn(block[0])
     , gap(gap)
     , n_free_tangents(n_free_tangents)
-  {}
-
-
-
-  template <>
-  LocalSolution<2>
-  LocalProblem<2>::solve(const std::array<double, 2> &b,
-                         const double                 bound,
-                         const std::array<double, 1> &prescribed) const
+    , open(schur_complement<dim>(block), n_free_tangents, solver)
+    , contact(tangential_block<dim>(block), n_free_tangents, solver)
   {
-    const double a_nn = a[0], a_tn = a[1], a_tt = a[3];
+    for (unsigned int i = 0; i < dim - 1; ++i)
+      a_tn[i] = block[i + 1];
+  }
 
-    LocalSolution<2> z;
+
+
+  template <int dim>
+  LocalSolution<dim>
+  LocalProblem<dim>::solve(const std::array<double, dim>     &b,
+                           const double                       bound,
+                           const std::array<double, dim - 1> &prescribed) const
+  {
+    LocalSolution<dim>          z;
+    std::array<double, dim - 1> force;
 
     // Without the obstacle.
-    z.tangential[0] = n_free_tangents == 0
-      ? prescribed[0]
-      : shrink(a_tt - a_tn * a_tn / a_nn, b[1] - a_tn * b[0] / a_nn, bound);
-    z.normal        = (b[0] - a_tn * z.tangential[0]) / a_nn;
-    z.in_contact    = !(z.normal < gap);
+    for (unsigned int i = 0; i < dim - 1; ++i)
+      force[i] = b[i + 1] - a_tn[i] * b[0] / a_nn;
+    z.tangential = open.solve(force, bound, prescribed);
+
+    double normal_force = b[0];
+    for (unsigned int i = 0; i < dim - 1; ++i)
+      normal_force -= a_tn[i] * z.tangential[i];
+    z.normal     = normal_force / a_nn;
+    z.in_contact = !(z.normal < gap);
 
     // With it.
     if (z.in_contact)
       {
         z.normal = gap;
-        if (n_free_tangents > 0)
-          z.tangential[0] = shrink(a_tt, b[1] - a_tn * gap, bound);
+        for (unsigned int i = 0; i < dim - 1; ++i)
+          force[i] = b[i + 1] - a_tn[i] * gap;
+        z.tangential = contact.solve(force, bound, prescribed);
       }
 
-    z.sticks = n_free_tangents > 0 && bound > 0 && z.tangential[0] == 0.;
+    z.sticks = n_free_tangents > 0 && bound > 0;
+    for (unsigned int i = 0; i < dim - 1; ++i)
+      z.sticks = z.sticks && z.tangential[i] == 0.;
     return z;
   }
+
+
+
+  template class LocalProblem<2>;
+  template class LocalProblem<3>;
 } // namespace Friction

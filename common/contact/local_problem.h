@@ -1,6 +1,10 @@
 #ifndef friction_contact_local_problem_h
 #define friction_contact_local_problem_h
 
+#include <common/contact/slip_problem.h>
+
+#include <common/scene/solver_settings.h>
+
 #include <array>
 
 namespace Friction
@@ -28,13 +32,13 @@ namespace Friction
    *
    * The problem is strictly convex and is solved exactly: first without the
    * obstacle, eliminating $z_n$ by its Schur complement; if that penetrates,
-   * with $z_n = g$. Either way a problem in the tangential plane remains. In
-   * two dimensions its unit sphere has just two points, so that stick, or slip
-   * to one side or the other, can be told from the force alone, (6.18).
+   * with $z_n = g$. Either way a problem in the tangential plane remains,
+   * (6.18), the SlipProblem. In two dimensions its unit sphere has just two
+   * points, so that stick, or slip to one side or the other, can be told from
+   * the force alone; in three it is a circle, and the direction of slip has to
+   * be found.
    *
    * Units: $z$ and $g$ are displacements, $b$ and $s$ nodal forces.
-   *
-   * Only dim=2 is available.
    */
   template <int dim>
   class LocalProblem
@@ -45,11 +49,15 @@ namespace Friction
      *                        column by column, normal first. Must be symmetric
      *                        positive definite.
      * @param gap             $g$.
-     * @param n_free_tangents number of tangential directions that can move.
+     * @param n_free_tangents number of tangential directions that can move,
+     *                        the first ones of the frame.
+     * @param solver          how the direction of slip is found if there are
+     *                        two of them; otherwise it makes no difference.
      */
     LocalProblem(const std::array<double, dim * dim> &block,
                  const double                         gap,
-                 const unsigned int                   n_free_tangents);
+                 const unsigned int                   n_free_tangents,
+                 const LocalSolver solver = LocalSolver::secular_equation);
 
     /**
      * Solves the problem.
@@ -64,9 +72,13 @@ namespace Friction
           const std::array<double, dim - 1> &prescribed) const;
 
   private:
-    std::array<double, dim * dim> a;
-    double                        gap;
-    unsigned int                  n_free_tangents;
+    double                      a_nn;
+    std::array<double, dim - 1> a_tn;
+    double                      gap;
+    unsigned int                n_free_tangents;
+
+    SlipProblem<dim - 1> open;    // z_n eliminated
+    SlipProblem<dim - 1> contact; // z_n = g
   };
 } // namespace Friction
 

@@ -1,0 +1,313 @@
+#include <common/contact/slip_problem.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace Friction
+{
+  namespace
+  {
+    // The minimiser of  a z^2 / 2 - b z + s |z|.
+    inline double
+    shrink(const double a, const double b, const double s)
+    {
+      if (std::abs(b) <= s)
+        return 0.;
+      return (b > 0 ? b - s : b + s) / a;
+    }
+
+
+
+    // |b|^2 - s^2, where b is close to the edge of the cone of friction the
+    // difference of large numbers: the products have to be exact. So are the
+    // sums where it matters.
+    inline double
+    square_difference(const std::array<double, 2> &b, const double s)
+    {
+      const double large = std::max(std::abs(b[0]), std::abs(b[1])),
+                   small = std::min(std::abs(b[0]), std::abs(b[1]));
+      const double l2 = large * large, s2 = s * s, m2 = small * small;
+      return ((l2 - s2) + m2) +
+        ((std::fma(large, large, -l2) + std::fma(small, small, -m2)) -
+         std::fma(s, s, -s2));
+    }
+
+
+
+    struct Direction
+    {
+      double cosine, sine;
+    };
+
+
+
+    // The direction (1,t)/sqrt(1+t^2), t >= 0, where
+    //
+    //   k t + d t/sqrt(1+t^2) = r,   k, d, r >= 0,
+    //
+    // to rounding of k, d, r and of r-d, which may be known better than as a
+    // difference. Where t > 1, the equation is multiplied by c = 1/t: then it
+    // is
+    //
+    //   (r-d) c + d (c - c/sqrt(1+c^2)) = k,
+    //
+    // all of whose terms can be computed without cancellation. Either way the
+    // unknown lies in [0,1], and Halley's iteration, the one of third order, is
+    // enclosed by a bracket.
+    Direction
+    find_direction(const double  k,
+                   const double  d,
+                   const double  r,
+                   const double  r_minus_d,
+                   unsigned int *n_iterations)
+    {
+      constexpr double       sqrt_half     = 0.70710678118654752;
+      constexpr unsigned int maximum_steps = 100;
+
+      // The error after a step of this relative size is the cube of it.
+      constexpr double tolerance = 4e-6;
+
+      const bool   flat = (k + sqrt_half * d >= r); // t <= 1
+      double       x, lower = 0., upper = 1.;
+      unsigned int n = 0;
+      if (flat)
+        // The left side is concave, and below its tangent in zero.
+        x = lower = std::min(1., r / (k + d));
+      else
+        {
+          // With u = 1/sqrt(1+c^2), the second term is d c (1-u), and
+          // c^2/2 >= 1-u >= gamma c^2. Therefore c is below the root of
+          // (r-d) c + gamma d c^3 = k, and that is below
+          const double gamma_d = (1. - sqrt_half) * d;
+          const double cubic   = std::cbrt(k / gamma_d);
+          if (r_minus_d > 0)
+            x = std::min(k / r_minus_d, cubic); // d may be zero
+          else
+            {
+              lower = std::min(1., std::sqrt(-2. * r_minus_d / d));
+              x     = std::sqrt(cubic * cubic - r_minus_d / gamma_d);
+            }
+          x = std::min(x, 1.);
+        }
+
+      while (n < maximum_steps)
+        {
+          ++n;
+          const double u2 = 1. / (1. + x * x), u = std::sqrt(u2);
+          double       f, f_1, f_2;
+          if (flat)
+            {
+              f   = x * (k + d * u) - r;
+              f_1 = k + d * u * u2;
+              f_2 = -3. * d * x * u * u2 * u2;
+            }
+          else
+            {
+              const double one_minus_u = x * x * u2 / (1. + u);
+              f                        = x * (r_minus_d + d * one_minus_u) - k;
+              f_1 = r_minus_d + d * one_minus_u * (1. + u + u2);
+              f_2 = 3. * d * x * u * u2 * u2;
+            }
+          (f < 0 ? lower : upper) = x;
+          double next             = x - f * f_1 / (f_1 * f_1 - .5 * f * f_2);
+          if (!(next >= lower && next <= upper))
+            next = .5 * (lower + upper);
+          const double change = std::abs(next - x);
+          x                   = next;
+          if (change <= tolerance * x)
+            break;
+        }
+      if (n_iterations != nullptr)
+        *n_iterations = n;
+
+      const double u = 1. / std::sqrt(1. + x * x);
+      return flat ? Direction{u, x * u} : Direction{x * u, u};
+    }
+  } // namespace
+
+
+
+  SlipProblem<1>::SlipProblem(const std::array<double, 1> &A,
+                              const unsigned int           n_free_components,
+                              const LocalSolver)
+    : a(A[0])
+    , n_free_components(n_free_components)
+  {}
+
+
+
+  std::array<double, 1>
+  SlipProblem<1>::solve(const std::array<double, 1> &b,
+                        const double                 s,
+                        const std::array<double, 1> &prescribed) const
+  {
+    return n_free_components == 0 ? prescribed
+                                  : std::array<double, 1>{{shrink(a, b[0], s)}};
+  }
+
+
+
+  SlipProblem<2>::SlipProblem(const std::array<double, 4> &A,
+                              const unsigned int           n_free_components,
+                              const LocalSolver            solver)
+    : a_11(A[0])
+    , a_12(A[1])
+    , n_free_components(n_free_components)
+    , solver(solver)
+  {
+    // A Jacobi rotation by at most 45 degrees from the axis of the larger
+    // diagonal entry.
+    const double a_22 = A[3];
+    const double half = .5 * std::abs(a_11 - a_22),
+                 root = std::hypot(half, a_12);
+    const double t    = root > 0 ? a_12 / (half + root) : 0.;
+    const double c    = 1. / std::sqrt(1. + t * t);
+    e_c               = a_11 >= a_22 ? c : t * c;
+    e_s               = a_11 >= a_22 ? t * c : c;
+    lambda_1          = std::max(a_11, a_22) + t * a_12;
+    difference        = 2. * root;
+
+    // The small eigenvalue from the determinant, the difference of products
+    // that have to be exact. If it is lost in the rounding of the entries, any
+    // value of that size will do.
+    const double product = a_12 * a_12;
+    const double determinant =
+      std::fma(a_11, a_22, -product) - std::fma(a_12, a_12, -product);
+    lambda_2 = determinant > 0
+      ? determinant / lambda_1
+      : std::numeric_limits<double>::epsilon() * lambda_1;
+  }
+
+
+
+  inline std::array<double, 2>
+  SlipProblem<2>::to_eigenbasis(const std::array<double, 2> &v) const
+  {
+    return {{e_c * v[0] + e_s * v[1], -e_s * v[0] + e_c * v[1]}};
+  }
+
+
+
+  inline std::array<double, 2>
+  SlipProblem<2>::from_eigenbasis(const double v_1, const double v_2) const
+  {
+    return {{e_c * v_1 - e_s * v_2, e_s * v_1 + e_c * v_2}};
+  }
+
+
+
+  // The positive root S of  2 s S n^T A n + S^2 |A n|^2 = |b|^2 - s^2.
+  inline double
+  SlipProblem<2>::amount_of_slip(const double n_1,
+                                 const double n_2,
+                                 const double s,
+                                 const double excess) const
+  {
+    const double An_1 = lambda_1 * n_1, An_2 = lambda_2 * n_2;
+    const double s_nAn = s * (n_1 * An_1 + n_2 * An_2);
+    return excess /
+      (s_nAn + std::sqrt(s_nAn * s_nAn + excess * (An_1 * An_1 + An_2 * An_2)));
+  }
+
+
+
+  std::array<double, 2>
+  SlipProblem<2>::solve(const std::array<double, 2> &b,
+                        const double                 s,
+                        const std::array<double, 2> &prescribed) const
+  {
+    if (n_free_components == 2)
+      return solver == LocalSolver::uzawa ? solve_uzawa(b, s)
+                                          : solve_secular_equation(b, s);
+    if (n_free_components == 0)
+      return prescribed;
+
+    // One component is left. That the other one is prescribed to be no more
+    // than the smallest of numbers makes no difference.
+    const double w = prescribed[1], force = b[0] - a_12 * w,
+                 k = a_11 * std::abs(w);
+    if (k < std::numeric_limits<double>::min() || s == 0.)
+      return {{shrink(a_11, force, s), w}};
+    const double    r         = std::abs(force);
+    const Direction slip      = find_direction(k, s, r, r - s, nullptr);
+    const double    magnitude = std::abs(w) * (slip.sine / slip.cosine);
+    return {{std::copysign(magnitude, force), w}};
+  }
+
+
+
+  std::array<double, 2>
+  SlipProblem<2>::solve_secular_equation(const std::array<double, 2> &b,
+                                         const double                 s,
+                                         unsigned int *n_iterations) const
+  {
+    if (n_iterations != nullptr)
+      *n_iterations = 0;
+    const std::array<double, 2> force = to_eigenbasis(b);
+    if (s == 0.)
+      return from_eigenbasis(force[0] / lambda_1, force[1] / lambda_2);
+
+    const double excess = square_difference(b, s);
+    if (excess <= 0.)
+      return {{0., 0.}};
+
+    // Close to the edge of the cone, how much b_2 differs from s is taken from
+    // the excess, since the rotation is subject to rounding.
+    const double b_1 = std::abs(force[0]), b_2 = std::abs(force[1]);
+    const double b_2_minus_s =
+      excess < s * s ? (excess - b_1 * b_1) / (b_2 + s) : b_2 - s;
+    const Direction n = find_direction(lambda_2 * b_1,
+                                       difference * s,
+                                       lambda_1 * b_2,
+                                       lambda_1 * b_2_minus_s + lambda_2 * s,
+                                       n_iterations);
+    const double    S = amount_of_slip(n.cosine, n.sine, s, excess);
+    return from_eigenbasis(std::copysign(S * n.cosine, force[0]),
+                           std::copysign(S * n.sine, force[1]));
+  }
+
+
+
+  std::array<double, 2>
+  SlipProblem<2>::solve_uzawa(const std::array<double, 2> &b,
+                              const double                 s,
+                              unsigned int                *n_iterations) const
+  {
+    if (n_iterations != nullptr)
+      *n_iterations = 0;
+    const double excess = square_difference(b, s);
+    if (s == 0. || excess <= 0.)
+      return solve_secular_equation(b, s);
+
+    const std::array<double, 2> force = to_eigenbasis(b);
+    const double                scale = std::hypot(b[0], b[1]);
+    const double                step =
+      2. * lambda_1 * (lambda_2 / (lambda_1 + lambda_2)) / s; // rho s
+    double mu_1 = force[0] / scale, mu_2 = force[1] / scale;
+    for (unsigned int n = 1; n <= maximum_uzawa_steps; ++n)
+      {
+        mu_1 += step * (force[0] - s * mu_1) / lambda_1;
+        mu_2 += step * (force[1] - s * mu_2) / lambda_2;
+        const double modulus = std::hypot(mu_1, mu_2);
+        if (modulus > 1.)
+          {
+            mu_1 /= modulus;
+            mu_2 /= modulus;
+          }
+        if (n_iterations != nullptr)
+          *n_iterations = n;
+
+        // If the slip is tiny, b - s mu has lost its digits, and so has v. The
+        // direction is that of mu, and its amount is found from that.
+        const double n_1 = mu_1 / std::min(modulus, 1.),
+                     n_2 = mu_2 / std::min(modulus, 1.);
+        const double S   = amount_of_slip(n_1, n_2, s, excess);
+        if (std::hypot(force[0] - (s + S * lambda_1) * n_1,
+                       force[1] - (s + S * lambda_2) * n_2) <=
+            uzawa_tolerance * scale)
+          return from_eigenbasis(S * n_1, S * n_2);
+      }
+    return solve_secular_equation(b, s);
+  }
+} // namespace Friction
