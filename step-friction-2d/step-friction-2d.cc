@@ -35,23 +35,23 @@
 #include <common/compatibility.h>
 #include <common/contact/contact_boundary.h>
 #include <common/contact/nodal_constraints.h>
+#include <common/estimate/contact_estimate.h>
+#include <common/estimate/exact_error.h>
 #include <common/estimate/marking.h>
-#include <common/estimate/residual_estimator.h>
 #include <common/multigrid/leaf_matrix.h>
 #include <common/multigrid/level_hierarchy.h>
 #include <common/multigrid/node_numbering.h>
 #include <common/output/console.h>
 #include <common/output/fields.h>
 #include <common/output/history.h>
+#include <common/output/level_records.h>
 #include <common/output/run_directory.h>
+#include <common/scene/command_line.h>
 #include <common/scene/parameters.h>
 #include <common/scene/scene.h>
 #include <common/solvers/coulomb_solver.h>
 #include <common/solvers/initial_guess.h>
 
-#include <algorithm>
-#include <cmath>
-#include <exception>
 #include <iomanip>
 #include <iostream>
 #include <memory>
@@ -119,8 +119,6 @@ namespace StepFriction2d
     void refine_mesh();
 
     void record_level(const unsigned int level, const ErrorEstimate &estimate);
-
-    void compare_with_exact_solution();
 
     // What is modelled: the scene file as the user wrote it, and the functions,
     // boundary ids and obstacle it has been turned into.
@@ -599,50 +597,21 @@ namespace StepFriction2d
   // elsewhere it is the usual residual estimator of elasticity, with residuals
   // in the cells, jumps of the stress across faces, and the mismatch to given
   // tractions. For Coulomb friction this is a guide and not a theorem: the
-  // proofs that we rely on are for contact without friction.
+  // proofs that we rely on are for contact without friction. Between the nodes
+  // the laws of contact hold only approximately; what is missing there is
+  // estimated as well.
   template <int dim>
   ErrorEstimate
   ContactProblem<dim>::estimate_error() const
   {
-    EstimatorProblem<dim> problem;
-    problem.lambda               = scene.material().lambda();
-    problem.mu                   = scene.material().mu();
-    problem.body_force           = scene.body_force().get();
-    problem.contact_boundary     = scene.contact_boundary_id();
-    problem.friction_coefficient = scene.friction_coefficient();
-    for (const auto &condition : scene.traction_conditions())
-      problem.tractions[condition.boundary_id] = condition.traction.get();
-    for (const auto &condition : scene.dirichlet_conditions())
-      problem.dirichlet[condition.boundary_id] = condition.components;
-
-    // Between the nodes the laws of contact hold only approximately. To measure
-    // this, the estimator needs normals and gaps as fields on $\Gamma_S$: the
-    // distance that is left where there is pressure, and the work of friction
-    // that is missing where something slides. The field of gaps is that of the
-    // vectors $g(p)\,n(p)$, which can be interpolated like displacements. The
-    // work is that of Coulomb's law; for Tresca's the coefficient is zero here,
-    // and this one term is left out.
-    VectorType normal(nodal_constraints->partitioner());
-    VectorType gap_vector(nodal_constraints->partitioner());
-    for (const ContactNode<dim> &node : *contact_boundary)
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          normal.local_element(dim * node.node + d) = node.normal()[d];
-          gap_vector.local_element(dim * node.node + d) =
-            node.gap * node.normal()[d];
-        }
-    for (VectorType *vector : {&normal, &gap_vector})
-      {
-        hanging_node_constraints.distribute(*vector);
-        vector->update_ghost_values();
-      }
-
-    EstimatorContact contact;
-    contact.traction   = &tractions;
-    contact.normal     = &normal;
-    contact.gap_vector = &gap_vector;
-    return Friction::estimate_error(
-      mapping, dof_handler, problem, displacement, contact);
+    return estimate_contact_error(scene,
+                                  mapping,
+                                  dof_handler,
+                                  hanging_node_constraints,
+                                  *nodal_constraints,
+                                  *contact_boundary,
+                                  displacement,
+                                  tractions);
   }
 
 
@@ -674,17 +643,8 @@ namespace StepFriction2d
     // over, at a price: this is not optimal for the energy, and the mesh gets
     // coarse so quickly with depth that the pressure carries a slight ripple.
     if (parameters.refinement.contact_zone)
-      {
-        std::vector<bool> touches(nodal_constraints->n_nodes(), false);
-        for (unsigned int p = 0; p < contact_boundary->size(); ++p)
-          touches[(*contact_boundary)[p].node] = state->in_contact(p);
-        for (const auto &cell : dof_handler.active_cell_iterators())
-          if (cell->is_locally_owned() && cell->at_boundary())
-            for (const unsigned int v : cell->vertex_indices())
-              if (touches[nodal_constraints->node_of_dof(
-                    cell->vertex_dof_index(v, 0))])
-                cell->set_refine_flag();
-      }
+      mark_contact_zone(
+        dof_handler, *nodal_constraints, *contact_boundary, *state);
     return any_marked;
   }
 
@@ -736,206 +696,72 @@ namespace StepFriction2d
   // <code>history.h5</code> which scripts can read, and for ParaView. A level
   // that has not converged is recorded as well, for one wants to see what it
   // looks like.
+  //
+  // <code>make_level_records()</code> turns nodal forces into pressures, sums
+  // of forces and half-widths of zones. Some of what it finds deserves a word.
+  // - The numbers of contact and sticky nodes count flags of the state, and are
+  //   what table 6.1 of the thesis lists.
+  // - The energy is $\hat J(u)$ of (6.8) at the final $\tau$. As $\tau$ and the
+  //   shape of the body differ from mesh to mesh, it need not fall with the
+  //   level. Within one Tresca problem it must never rise from cycle to cycle.
+  //   With Algorithm 3 it may, as $\tau$ and with it the functional changes.
+  // - Of each cycle we keep the relative increment, the energy of the smoothed
+  //   iterate, the step length of the coarse correction (which may exceed one),
+  //   the number of components that truncation has taken from coarse functions,
+  //   and the norm of the truncated residual. Once phases have settled, the
+  //   number of truncated components is constant, and the iteration is linear.
+  // - <code>rho_tau</code> exists in the two versions that the introduction
+  //   mentions, and is zero for Algorithm 3; <code>certificate</code> is the
+  //   largest of its six violations.
+  //
+  // The history is rewritten as a whole after each level and put in place by
+  // renaming. A run that is killed leaves all levels that were complete.
   template <int dim>
   void
   ContactProblem<dim>::record_level(const unsigned int   level,
                                     const ErrorEstimate &estimate)
   {
-    // First the numbers of the level.
-    // - <code>contact_nodes</code> and <code>sticky_nodes</code> count flags of
-    //   the state, and are what table 6.1 of the thesis lists;
-    // - <code>cycles</code> counts multigrid cycles of all outer iterations;
-    //   there is one outer iteration unless Algorithm 2 is used;
-    // - <code>contraction</code> is the geometric mean, per cycle, by which
-    //   increments shrink;
-    // - <code>energy</code> is $\hat J(u)$ of (6.8) at the final $\tau$. As
-    //   $\tau$ and the shape of the body differ from mesh to mesh, it need not
-    //   fall with the level;
-    // - <code>rho_tau</code> exists in the two versions that the introduction
-    //   mentions, and is zero for Algorithm 3;
-    // - <code>certificate</code> is the largest of its six violations.
-    LevelRecord record;
-    record.level               = level;
-    record.cells               = triangulation.n_global_active_cells();
-    record.dofs                = dof_handler.n_dofs();
-    record.contact_nodes       = state->n_contact();
-    record.sticky_nodes        = state->n_sticking();
-    record.outer_iterations    = report.outer_iterations;
-    record.cycles              = report.cycles.size();
-    record.contraction         = report.contraction;
-    record.energy              = report.energy;
-    record.rho_tau             = report.rho_tau_as_printed();
-    record.rho_tau_contraction = report.rho_tau_contraction();
-    record.estimated_error     = estimate.total;
-    record.certificate         = report.certificate.largest();
-    record.setup_seconds       = setup_seconds;
-    record.solve_seconds       = solve_seconds;
+    LevelRecords<dim> records     = make_level_records(level,
+                                                   dof_handler,
+                                                   *nodal_constraints,
+                                                   *contact_boundary,
+                                                   displacement,
+                                                   *state,
+                                                   report);
+    records.level.estimated_error = estimate.total;
+    records.level.setup_seconds   = setup_seconds;
+    records.level.solve_seconds   = solve_seconds;
 
-    // Then the contact boundary, one row per node. The solver's residual is
-    // $f-Au$, so that the force of the obstacle on the body, $R=Au-f$, is its
-    // negative. Its normal part points into the body, and $\tau(p)=-R(p)\cdot
-    // n(p)$ is positive.
-    std::vector<ContactRecord<dim>> contact;
-    Tensor<1, dim>                  tangential_force;
-    for (unsigned int p = 0; p < contact_boundary->size(); ++p)
-      {
-        const ContactNode<dim> &node = (*contact_boundary)[p];
-        ContactRecord<dim>      row;
-        row.dof =
-          nodal_constraints->partitioner()->local_to_global(dim * node.node);
-        row.point   = node.point;
-        row.normal  = node.normal();
-        row.gap     = node.gap;
-        row.measure = node.measure;
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            row.displacement[d] =
-              displacement.local_element(dim * node.node + d);
-            row.force[d] = -report.residual.local_element(dim * node.node + d);
-          }
-        row.state = !state->in_contact(p) ? 0 : state->sticks(p) ? 2 : 1;
-        contact.push_back(row);
-
-        // From the rows we sum up. The pressure at a node is its normal force
-        // over $m_p$. Half-widths are half the sum of $m_p$ over the nodes in
-        // contact, or sticking: lengths, in two dimensions, and sensible only
-        // if the zone is connected. The edge of a zone is not known better than
-        // to a cell. The tangential force is a sum of <i>vectors</i>: where a
-        // scene is symmetric, the two halves cancel, and a value near zero does
-        // not mean that there is no friction.
-        const double normal_force = -row.force * row.normal;
-        tangential_force += row.force + normal_force * row.normal;
-        if (row.state > 0)
-          {
-            record.normal_force += normal_force;
-            record.max_pressure =
-              std::max(record.max_pressure, normal_force / row.measure);
-            record.contact_half_width += .5 * row.measure;
-            if (row.state == 2)
-              record.stick_half_width += .5 * row.measure;
-          }
-      }
-    record.tangential_force = tangential_force.norm();
-
-    // How the iteration went, cycle by cycle: relative increment, energy of the
-    // smoothed iterate, step length of the coarse correction (which may exceed
-    // one), number of components that truncation has taken from coarse
-    // functions, and norm of the truncated residual. Within one Tresca problem
-    // the energy must never rise. With Algorithm 3 it may, as $\tau$ and with
-    // it the functional changes. Once phases have settled, the number of
-    // truncated components is constant, and the iteration is linear.
-    std::vector<CycleRecord> cycles;
-    for (const CycleInfo &info : report.cycles)
-      {
-        CycleRecord row;
-        row.level     = level;
-        row.increment = info.increment;
-        row.energy    = info.energy;
-        row.damping   = info.damping;
-        row.truncated = static_cast<unsigned int>(info.truncated + .5);
-        row.residual  = info.residual;
-        cycles.push_back(row);
-      }
-
-    // For Algorithm 2, the relative changes $\varepsilon^k$ of $\tau$.
-    std::vector<OuterRecord> outer;
-    for (const double change : report.outer_changes)
-      {
-        OuterRecord row;
-        row.level  = level;
-        row.change = change;
-        outer.push_back(row);
-      }
-
-    // The history is rewritten as a whole after each level and put in place by
-    // renaming. A run that is killed leaves all levels that were complete.
-    console.level_complete(record);
-    history.add_level(record, cycles, contact, outer);
+    console.level_complete(records.level);
+    history.add_level(
+      records.level, records.cycles, records.contact, records.outer);
     if (parameters.output.fields)
       fields.write_level(level,
                          mapping,
                          dof_handler,
                          displacement,
                          hanging_node_constraints,
-                         contact,
+                         records.contact,
                          estimate.cell_errors.size() > 0 ? &estimate.cell_errors
                                                          : nullptr);
-  }
 
-
-
-  // @sect4{ContactProblem::compare_with_exact_solution}
-
-  // Some scenes know their solution. The error in the energy norm, which the
-  // method minimises, is then measured with a quadrature formula that is good
-  // enough for solutions that are only piecewise smooth.
-  template <int dim>
-  void
-  ContactProblem<dim>::compare_with_exact_solution()
-  {
-    const Function<dim>                 &exact = *scene.exact_displacement();
-    const QGauss<dim>                    quadrature(4);
-    FEValues<dim>                        fe_values(mapping,
-                            fe,
-                            quadrature,
-                            update_gradients | update_quadrature_points |
-                              update_JxW_values);
-    const FEValuesExtractors::Vector     u(0);
-    std::vector<SymmetricTensor<2, dim>> strains(quadrature.size());
-    Vector<double>                       value(dim);
-
-    // The loop computes $\|u-u_h\|_a$, and on the way the largest error at a
-    // node, relative to the largest displacement. The latter is for patch
-    // tests, whose solution is linear: there a method without penalty is exact
-    // up to rounding and the tolerance of the solver.
-    double energy_error = 0, node_error = 0, node_size = 0;
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          fe_values.reinit(cell);
-          fe_values[u].get_function_symmetric_gradients(displacement, strains);
-          for (const unsigned int q : fe_values.quadrature_point_indices())
-            {
-              Tensor<2, dim> gradient;
-              for (unsigned int c = 0; c < dim; ++c)
-                gradient[c] = exact.gradient(fe_values.quadrature_point(q), c);
-              const SymmetricTensor<2, dim> e =
-                symmetrize(gradient) - strains[q];
-              energy_error += (scene.material().lambda() * trace(e) * trace(e) +
-                               2. * scene.material().mu() * (e * e)) *
-                fe_values.JxW(q);
-            }
-          for (const unsigned int v : cell->vertex_indices())
-            {
-              exact.vector_value(cell->vertex(v), value);
-              for (unsigned int d = 0; d < dim; ++d)
-                {
-                  node_error = std::max(
-                    node_error,
-                    std::abs(value[d] -
-                             displacement(cell->vertex_dof_index(v, d))));
-                  node_size = std::max(node_size, std::abs(value[d]));
-                }
-            }
-        }
-    energy_error = std::sqrt(energy_error);
-
-    std::ostringstream text;
-    text << std::scientific << std::setprecision(2)
-         << "         error against the exact solution: energy norm "
-         << energy_error;
-    const bool exact_at_nodes = node_error <= 1e-10 * node_size;
-    if (last_exact_error > 0 && !exact_at_nodes &&
-        parameters.refinement.strategy == RefinementStrategy::uniform)
-      text << std::fixed << " (order "
-           << std::log2(last_exact_error / energy_error) << ")"
-           << std::scientific;
-    if (!exact_at_nodes)
-      text << ", nodes " << node_error / node_size << " of the largest";
-    else
-      text << ", nodes exact to 1e-10";
-    console.note(text.str());
-    last_exact_error = energy_error;
+    // Some scenes know their solution. Orders of convergence make sense if the
+    // width of the mesh is halved everywhere; a patch test, whose solution is
+    // linear, has none, for there a method without penalty is exact up to
+    // rounding and the tolerance of the solver.
+    if (scene.exact_displacement() != nullptr)
+      {
+        const ExactError error =
+          compute_exact_error(mapping,
+                              dof_handler,
+                              scene.material(),
+                              *scene.exact_displacement(),
+                              displacement);
+        const bool uniform =
+          parameters.refinement.strategy == RefinementStrategy::uniform;
+        console.note(error.describe(uniform ? last_exact_error : 0.));
+        last_exact_error = error.energy;
+      }
   }
 
 
@@ -996,8 +822,6 @@ namespace StepFriction2d
           estimate = estimate_error();
 
         record_level(level, estimate);
-        if (scene.exact_displacement() != nullptr)
-          compare_with_exact_solution();
 
         // A level without a certified solution is the end: what is wrong on
         // this mesh would only be interpolated to the next one. The certificate
@@ -1022,79 +846,20 @@ namespace StepFriction2d
 
 // @sect3{The <code>main</code> function}
 
-// A scene file, then entries of it that are to be different this time. Whatever
-// is wrong with them is said in one sentence, without a stack trace.
-//
-// The exit status is part of the result. Zero means that all levels have been
-// solved and certified. One means that some level has not; its results are
-// there to be looked at, but not to be believed. Two means that the input was
-// at fault, three is for what should never happen.
+// A scene file, then entries of it that are to be different this time.
+// Whatever is wrong with them is said in one sentence, and the exit status is
+// part of the result; see <code>run_program()</code>.
 int
 main(int argc, char *argv[])
 {
-  using namespace dealii;
-  using namespace Friction;
-
-  const std::string usage =
-    "Usage: step-friction-2d SCENE.prm [Section/Entry=value ...]\n"
-    "       step-friction-2d --parameters   print all entries with defaults\n"
-    "       step-friction-2d --help         print this\n"
-    "\n"
-    "Solves a contact problem with friction in two dimensions by monotone\n"
-    "multigrid. SCENE.prm describes body, obstacle, loads and solver; entries\n"
-    "given on the command line take precedence over the file, for example\n"
-    "\n"
-    "  step-friction-2d hertz.prm 'Contact/Friction coefficient=0.05'\n"
-    "\n"
-    "The results go to the directory given by Output/Directory: history.h5 "
-    "and\n"
-    "fields for ParaView. Exit status: 0 solved, 1 not converged, 2 bad "
-    "input.\n";
-
-  try
-    {
-      Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-      const std::vector<std::string>   arguments(argv + 1, argv + argc);
-      if (arguments.empty() || arguments[0] == "--help" || arguments[0] == "-h")
-        {
-          (arguments.empty() ? std::cerr : std::cout) << usage;
-          return arguments.empty() ? 2 : 0;
-        }
-      if (arguments[0] == "--parameters")
-        {
-          print_default_parameters(std::cout);
-          return 0;
-        }
-      // The data structures are those of a parallel program, but the solver
-      // does not yet exchange values between processes. Rather than compute
-      // something that looks plausible we refuse.
-      if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
-        {
-          if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-            std::cerr << "step-friction-2d: more than one process is not "
-                         "supported yet: run this program without mpirun, or "
-                         "with -np 1."
-                      << std::endl;
-          return 2;
-        }
-
-      // The scene is read and checked before anything is created. What follows
-      // is for any dimension as far as this file is concerned; the local
-      // problems in the library exist in two dimensions only.
-      const Parameters parameters =
-        read_parameters(arguments[0], {arguments.begin() + 1, arguments.end()});
-      StepFriction2d::ContactProblem<2> problem(parameters, std::cout);
-      return problem.run() ? 0 : 1;
-    }
-  catch (const InputError &error)
-    {
-      std::cerr << "step-friction-2d: " << error.what() << std::endl;
-      return 2;
-    }
-  catch (const std::exception &error)
-    {
-      std::cerr << "step-friction-2d: unexpected error: " << error.what()
-                << std::endl;
-      return 3;
-    }
+  return Friction::run_program(argc,
+                               argv,
+                               "step-friction-2d",
+                               "two",
+                               "hertz.prm 'Contact/Friction coefficient=0.05'",
+                               [](const Friction::Parameters &parameters) {
+                                 StepFriction2d::ContactProblem<2> problem(
+                                   parameters, std::cout);
+                                 return problem.run();
+                               });
 }

@@ -103,13 +103,7 @@ namespace Friction
               level.own.push_back(node);
             if (!level.edge[node] && touches_refined[node] &&
                 !constraints.is_fixed(leaf_node))
-              {
-                if (!level.relaxed.empty() &&
-                    level.relaxed.back().second == node)
-                  ++level.relaxed.back().second;
-                else
-                  level.relaxed.emplace_back(node, node + 1);
-              }
+              append(level.relaxed, node);
           }
 
         // The vertices of the children lie at multiples of one half in the

@@ -6,26 +6,87 @@
 
 namespace Friction
 {
+  namespace
+  {
+    double
+    norm_of(const std::array<double, 1> &u_T)
+    {
+      return std::abs(u_T[0]);
+    }
+
+    double
+    norm_of(const std::array<double, 2> &u_T)
+    {
+      return std::sqrt(u_T[0] * u_T[0] + u_T[1] * u_T[1]);
+    }
+
+    // On a line there is nothing to turn.
+    NodeBlock<2>
+    friction_curvature(const ContactNode<2> &,
+                       const std::array<double, 1> &,
+                       const double,
+                       const double)
+    {
+      return zero_block<2>();
+    }
+
+    // The second derivative of s |u_T| on the free tangents.
+    NodeBlock<3>
+    friction_curvature(const ContactNode<3>        &node,
+                       const std::array<double, 2> &u_T,
+                       const double                 s,
+                       const double                 largest)
+    {
+      const double norm   = norm_of(u_T);
+      const double factor = (s < largest * norm) ? s / norm : largest;
+
+      // Perpendicular to the slip; components that cannot move are left out.
+      const double turned[2] = {-u_T[1] / norm, u_T[0] / norm};
+      Tensor<1, 3> e;
+      NodeBlock<3> curvature;
+      for (unsigned int t = 0; t < node.n_free_tangents; ++t)
+        e += turned[t] * node.frame[t + 1];
+      for (unsigned int c = 0; c < 3; ++c)
+        for (unsigned int r = 0; r < 3; ++r)
+          curvature[c * 3 + r] = factor * e[r] * e[c];
+      return curvature;
+    }
+
+    // Whether the block is the other one within a tenth of its size.
+    template <int dim>
+    bool
+    is_close(const NodeBlock<dim> &block, const NodeBlock<dim> &other)
+    {
+      double difference = 0, size = 0;
+      for (unsigned int i = 0; i < dim * dim; ++i)
+        {
+          difference += (block[i] - other[i]) * (block[i] - other[i]);
+          size += other[i] * other[i];
+        }
+      return difference <= .01 * size;
+    }
+  } // namespace
+
+
+
   template <int dim>
-  Linearization<dim>::Linearization(const NodalConstraints<dim> &constraints,
+  Linearization<dim>::Linearization(const NodeBlockMatrix<dim>  &matrix,
+                                    const NodalConstraints<dim> &constraints,
                                     const ContactBoundary<dim>  &contact,
                                     const double friction_coefficient,
                                     const TruncationVariant variant)
-    : contact(contact)
+    : matrix(matrix)
+    , contact(contact)
     , friction_coefficient(friction_coefficient)
     , variant(variant)
     , current(constraints)
-  {
-    static_assert(dim == 2,
-                  "In three dimensions the second derivative of friction has "
-                  "to be added here.");
-  }
+  {}
 
 
 
   template <int dim>
   void
-  Linearization<dim>::update(const VectorType &, const ContactState &state)
+  Linearization<dim>::update(const VectorType &u, const ContactState &state)
   {
     for (unsigned int p = 0; p < contact.size(); ++p)
       {
@@ -50,7 +111,25 @@ namespace Friction
         if (!state.in_contact(p) && !state.sticks(p) &&
             node.n_free_tangents == dim - 1)
           projector = identity_block<dim>();
-        current.set(node.node, projector, zero_block<dim>());
+
+        NodeBlock<dim> curvature = zero_block<dim>();
+        if (dim == 3 &&
+            variant != TruncationVariant::phases_without_second_order)
+          {
+            const double bound = friction_coefficient * state.normal_force(p);
+            const auto   u_T   = tangential_components<dim>(node, u);
+            if (bound > 0 && !state.sticks(p) && !all_is_held &&
+                norm_of(u_T) > 0)
+              curvature = friction_curvature(
+                node,
+                u_T,
+                bound,
+                1e8 * trace<dim>(matrix.block(matrix.row_begin(node.node))));
+            if (projector == current.projector(node.node) &&
+                is_close<dim>(current.curvature(node.node), curvature))
+              continue;
+          }
+        current.set(node.node, projector, curvature);
       }
   }
 
@@ -68,10 +147,7 @@ namespace Friction
           {
             const ContactNode<dim> &node = contact[p];
             const auto              u_T  = tangential_components<dim>(node, u);
-            double                  norm = 0;
-            for (const double component : u_T)
-              norm += component * component;
-            norm = std::sqrt(norm);
+            const double            norm = norm_of(u_T);
             if (norm > 0)
               for (unsigned int t = 1; t < dim; ++t)
                 for (unsigned int d = 0; d < dim; ++d)
@@ -120,11 +196,13 @@ namespace Friction
         if (friction_coefficient * state.normal_force(p) > 0 &&
             !state.sticks(p))
           {
-            // Each tangential component keeps its sign.
-            const auto u_T = tangential_components<dim>(node, u);
+            // The displacement keeps a part in the direction of its slip.
+            const auto     u_T  = tangential_components<dim>(node, u);
+            const double   norm = norm_of(u_T);
+            Tensor<1, dim> back;
             for (unsigned int t = 1; t < dim; ++t)
-              add((u_T[t - 1] > 0 ? -1. : 1.) * node.frame[t],
-                  std::abs(u_T[t - 1]));
+              back -= (norm > 0 ? u_T[t - 1] / norm : 1.) * node.frame[t];
+            add(back, norm);
           }
       }
   }
@@ -132,4 +210,5 @@ namespace Friction
 
 
   template class Linearization<2>;
+  template class Linearization<3>;
 } // namespace Friction

@@ -3,6 +3,7 @@
 
 #include <common/contact/contact_boundary.h>
 #include <common/contact/contact_state.h>
+#include <common/multigrid/node_block_matrix.h>
 #include <common/multigrid/truncation.h>
 #include <common/scene/solver_settings.h>
 
@@ -23,19 +24,32 @@ namespace Friction
    * </table>
    * With TruncationVariant::contact nothing is free at any node in contact.
    *
-   * In two dimensions $\omega''=0$, since $|u_T|$ is piecewise linear.
+   * In two dimensions $\omega''=0$, since $|u_T|$ is piecewise linear. In three
+   * the boundary of the friction cone is curved: turning the direction of slip
+   * costs energy, and
+   * @f[ \omega''_p = \frac{F\tau(p)}{|u_T|}
+   *     \left(I - \frac{u_T u_T^T}{|u_T|^2}\right) @f]
+   * is a matrix of rank one, whose only direction is the tangent perpendicular
+   * to the slip. It grows without bound as the slip goes to zero and is cut off
+   * where it exceeds the stiffness of the node by eight orders of magnitude;
+   * nothing turns there any more, and larger numbers would only cost digits.
+   *
+   * Level matrices have to be computed anew wherever $\omega''_p$ changes, and
+   * in principle it changes always and everywhere. So it is kept for as long as
+   * it is right within 10 %: the line search works with the true energy anyway.
    */
   template <int dim>
   class Linearization
   {
   public:
-    /** @p contact is kept by reference. */
-    Linearization(const NodalConstraints<dim> &constraints,
+    /** @p matrix and @p contact are kept by reference. */
+    Linearization(const NodeBlockMatrix<dim>  &matrix,
+                  const NodalConstraints<dim> &constraints,
                   const ContactBoundary<dim>  &contact,
                   const double                 friction_coefficient,
                   const TruncationVariant      variant);
 
-    /** Determines the phases. */
+    /** Determines the phases and, in three dimensions, $\omega''$. */
     void update(const VectorType &u, const ContactState &state);
 
     const Truncation<dim> &
@@ -53,6 +67,9 @@ namespace Friction
      * Cartesian bounds within which a correction of @p u is admissible and
      * causes no change of phase, (6.12). A half space $n\cdot v\le b$ is
      * replaced by the largest box of equal sides inside it that contains zero.
+     * A sliding node may not move back beyond the line through $u_T=0$ that is
+     * perpendicular to its slip; in two dimensions this is to say that $u_T$
+     * keeps its sign.
      */
     void bounds(VectorType         &lower,
                 VectorType         &upper,
@@ -60,6 +77,7 @@ namespace Friction
                 const ContactState &state) const;
 
   private:
+    const NodeBlockMatrix<dim> &matrix;
     const ContactBoundary<dim> &contact;
     const double                friction_coefficient;
     const TruncationVariant     variant;

@@ -9,7 +9,8 @@ namespace Friction
     const NodeBlockMatrix<dim>  &matrix,
     const NodalConstraints<dim> &constraints,
     const ContactBoundary<dim>  &contact,
-    const double                 friction_coefficient)
+    const double                 friction_coefficient,
+    const LocalSolver            local_solver)
     : matrix(matrix)
     , contact(contact)
     , friction_coefficient(friction_coefficient)
@@ -36,16 +37,14 @@ namespace Friction
                   sum += p.frame[r][k] * A[l * dim + k] * p.frame[c][l];
               block[c * dim + r] = sum;
             }
-        local_problems.emplace_back(block, p.gap, p.n_free_tangents);
+        local_problems.emplace_back(
+          block, p.gap, p.n_free_tangents, local_solver);
       }
 
     for (unsigned int node = 0; node < is_ordinary.size(); ++node)
       if (is_ordinary[node])
         {
-          if (!ordinary.empty() && ordinary.back().second == node)
-            ++ordinary.back().second;
-          else
-            ordinary.emplace_back(node, node + 1);
+          append(ordinary, node);
 
           NodeBlock<dim> block;
           std::copy_n(
@@ -185,4 +184,5 @@ namespace Friction
 
 
   template class MonotoneSmoother<2>;
+  template class MonotoneSmoother<3>;
 } // namespace Friction

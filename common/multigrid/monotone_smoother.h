@@ -6,6 +6,7 @@
 #include <common/contact/local_problem.h>
 #include <common/contact/nodal_constraints.h>
 #include <common/multigrid/sweep_schedule.h>
+#include <common/scene/solver_settings.h>
 
 #include <vector>
 
@@ -34,11 +35,14 @@ namespace Friction
      * Arguments given by reference are kept.
      * @param friction_coefficient  zero for frictionless contact, for which
      *        nothing of friction is then computed.
+     * @param local_solver  of the local problems, in three dimensions.
      */
-    MonotoneSmoother(const NodeBlockMatrix<dim>  &matrix,
-                     const NodalConstraints<dim> &constraints,
-                     const ContactBoundary<dim>  &contact,
-                     const double                 friction_coefficient);
+    MonotoneSmoother(
+      const NodeBlockMatrix<dim>  &matrix,
+      const NodalConstraints<dim> &constraints,
+      const ContactBoundary<dim>  &contact,
+      const double                 friction_coefficient,
+      const LocalSolver local_solver = LocalSolver::secular_equation);
 
     /** What a number of sweeps is to do; see sweeps(). */
     struct Sweeps

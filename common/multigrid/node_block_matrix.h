@@ -117,6 +117,16 @@ namespace Friction
    */
   using NodeRanges = std::vector<std::pair<unsigned int, unsigned int>>;
 
+  /** Appends a node with a number larger than all before. */
+  inline void
+  append(NodeRanges &ranges, const unsigned int node)
+  {
+    if (!ranges.empty() && ranges.back().second == node)
+      ++ranges.back().second;
+    else
+      ranges.emplace_back(node, node + 1);
+  }
+
   /**
    * Block Gauss-Seidel for A x = b over the nodes of a range, in ascending
    * order or, backwards, in descending order.
@@ -134,8 +144,10 @@ namespace Friction
 
 
 
-  // The innermost loop of everything, hence inline. In two dimensions the
-  // compiler's own vector type makes each column of a block one instruction.
+  // The innermost loop of everything, hence inline. The compiler's own vector
+  // type makes each column of a block one instruction in two dimensions, and
+  // two in three. Each column has sums of its own: with a single one every
+  // addition would have to wait for the one before.
   template <int dim>
   inline NodeValue<dim>
   NodeBlockMatrix<dim>::row_times(const unsigned int row, const double *x) const
@@ -143,11 +155,11 @@ namespace Friction
     const std::size_t   end = row_starts[row + 1];
     const double       *a   = values.data() + row_starts[row] * (dim * dim);
     const unsigned int *c   = columns.data();
-    NodeValue<dim>      y{};
+    NodeValue<dim>      y;
+    typedef double      Pair __attribute__((vector_size(16), aligned(8)));
     if constexpr (dim == 2)
       {
-        typedef double Pair __attribute__((vector_size(16), aligned(8)));
-        Pair           sum0 = {0., 0.}, sum1 = {0., 0.};
+        Pair sum0 = {0., 0.}, sum1 = {0., 0.};
         for (std::size_t e = row_starts[row]; e < end; ++e, a += 4)
           {
             const double *xe = x + 2 * static_cast<std::size_t>(c[e]);
@@ -160,13 +172,26 @@ namespace Friction
         y[1] = sum0[1];
       }
     else
-      for (std::size_t e = row_starts[row]; e < end; ++e, a += dim * dim)
-        {
-          const double *xe = x + dim * static_cast<std::size_t>(c[e]);
-          for (int k = 0; k < dim; ++k)
-            for (int r = 0; r < dim; ++r)
-              y[r] += a[k * dim + r] * xe[k];
-        }
+      {
+        Pair   sum0 = {0., 0.}, sum1 = {0., 0.}, sum2 = {0., 0.};
+        double last0 = 0., last1 = 0., last2 = 0.;
+        for (std::size_t e = row_starts[row]; e < end; ++e, a += 9)
+          {
+            const double *xe = x + 3 * static_cast<std::size_t>(c[e]);
+            const Pair    x0 = {xe[0], xe[0]}, x1 = {xe[1], xe[1]},
+                       x2 = {xe[2], xe[2]};
+            sum0 += *reinterpret_cast<const Pair *>(a) * x0;
+            sum1 += *reinterpret_cast<const Pair *>(a + 3) * x1;
+            sum2 += *reinterpret_cast<const Pair *>(a + 6) * x2;
+            last0 += a[2] * xe[0];
+            last1 += a[5] * xe[1];
+            last2 += a[8] * xe[2];
+          }
+        sum0 += sum1 + sum2;
+        y[0] = sum0[0];
+        y[1] = sum0[1];
+        y[2] = last0 + last1 + last2;
+      }
     return y;
   }
 } // namespace Friction

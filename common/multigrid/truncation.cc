@@ -92,19 +92,19 @@ namespace Friction
 
 
   template <int dim>
-  double
+  unsigned int
   Truncation<dim>::n_held_components() const
   {
-    double sum = 0;
+    unsigned int sum = 0;
     for (const unsigned int node : specials)
-      sum += dim - std::round(trace<dim>(projectors[slot[node]].data()));
+      sum += dim - std::lround(trace<dim>(projectors[slot[node]].data()));
     return sum;
   }
 
 
 
   template <int dim>
-  double
+  unsigned int
   Truncation<dim>::n_truncated_components() const
   {
     return n_held_components() - held_by_constraints;

@@ -75,19 +75,19 @@ namespace Friction
     }
 
     /** The number of displacement components that are held at contact nodes. */
-    double n_truncated_components() const;
+    unsigned int n_truncated_components() const;
 
   private:
     static constexpr unsigned int identity_slot = 0;
     static constexpr unsigned int zero_slot     = 1;
 
     unsigned int                n_owned;
-    double                      held_by_constraints = 0;
+    unsigned int                held_by_constraints = 0;
     std::vector<unsigned int>   slot;
     std::vector<NodeBlock<dim>> projectors, curvatures;
     std::vector<unsigned int>   specials;
 
-    double n_held_components() const;
+    unsigned int n_held_components() const;
   };
 } // namespace Friction
 

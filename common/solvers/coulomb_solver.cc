@@ -154,4 +154,5 @@ namespace Friction
 
 
   template class CoulombSolver<2>;
+  template class CoulombSolver<3>;
 } // namespace Friction

@@ -55,8 +55,10 @@ namespace Friction
     , smoother(problem.matrix,
                problem.constraints,
                problem.contact,
-               problem.effective_coefficient())
-    , linearization(problem.constraints,
+               problem.effective_coefficient(),
+               settings.local_solver)
+    , linearization(problem.matrix,
+                    problem.constraints,
                     problem.contact,
                     problem.effective_coefficient(),
                     settings.truncation)
@@ -278,4 +280,5 @@ namespace Friction
 
 
   template class MonotoneMultigrid<2>;
+  template class MonotoneMultigrid<3>;
 } // namespace Friction

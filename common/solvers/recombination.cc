@@ -81,13 +81,27 @@ namespace Friction
     if (n == 1)
       return 0;
 
+    // The energy of the linearised problem has a part of friction, too; it is
+    // that of contact nodes only.
+    const auto friction = [&](const VectorType &a, const VectorType &b) {
+      double sum = 0;
+      for (const unsigned int node : truncation.special_nodes())
+        {
+          const NodeValue<dim> image = times<dim>(
+            truncation.curvature(node).data(), b.begin() + dim * node);
+          sum += dot<dim>(a.begin() + dim * node, image.data());
+        }
+      return sum;
+    };
+
     Eigen::MatrixXd gram(n, n);
     Eigen::VectorXd rhs(n);
     for (unsigned int i = 0; i < n; ++i)
       {
         rhs(i) = r * *basis[i];
         for (unsigned int j = 0; j <= i; ++j)
-          gram(i, j) = gram(j, i) = *basis[i] * *images[j];
+          gram(i, j) = gram(j, i) =
+            *basis[i] * *images[j] + friction(*basis[i], *basis[j]);
       }
     // Scaled to a unit diagonal; directions that are numerically dependent are
     // left out by the pivoted factorisation.

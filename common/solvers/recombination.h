@@ -37,7 +37,8 @@ namespace Friction
     /**
      * Replaces the correction @p v, with product @p Av = A v, by the
      * combination of v and previous steps that minimises the energy of the
-     * linearised problem with truncated residual @p r; @p Av is updated alike.
+     * linearised problem with truncated residual @p r, the second derivative of
+     * friction in @p truncation included; @p Av is updated alike.
      * Returns the number of previous steps that took part.
      */
     unsigned int improve(VectorType            &v,

@@ -8,19 +8,17 @@
 // degree of freedom, and the memory bandwidth of a leading sweep compared with
 // a triad a = b + s c, which is as fast as memory allows.
 //
-// Usage: benchmark-cost scene.prm refinements [Section/Entry=value ...]
-
-#include <common/solvers/coulomb_solver.h>
-#include <common/solvers/initial_guess.h>
+// Usage: benchmark-cost 2|3 scene.prm [Section/Entry=value ...]
 
 #include <deal.II/base/timer.h>
+#include <deal.II/base/utilities.h>
 
-#include <deal.II/distributed/solution_transfer.h>
-
-#include <tests/support/discretization.h>
+#include <tests/support/nested_iteration.h>
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
+#include <iostream>
 #include <vector>
 
 namespace Benchmark
@@ -58,40 +56,12 @@ namespace Benchmark
 
 
 
-  struct Solution
+  double
+  peak_memory()
   {
-    unsigned int  cycles;
-    double        setup, seconds;
-    MultigridCost cost;
-    SolverReport  report;
-  };
-
-
-
-  template <int dim>
-  Solution
-  solve(const Discretization<dim>  &discretization,
-        const DiscreteProblem<dim> &problem,
-        const LevelHierarchy<dim>  &hierarchy,
-        const SolverSettings       &settings,
-        VectorType                 &u,
-        ContactState               &state)
-  {
-    Solution           result;
-    Timer              timer;
-    CoulombSolver<dim> solver(
-      discretization.dof_handler, hierarchy, problem, settings);
-    result.setup = timer.wall_time();
-    timer.restart();
-    result.report  = solver.solve(u, state);
-    result.seconds = timer.wall_time();
-    result.cycles  = result.report.cycles.size();
-    result.cost    = solver.multigrid().cost();
-    AssertThrow(
-      result.report.converged,
-      ExcMessage("A benchmark that does not converge measures nothing: " +
-                 result.report.certificate.describe()));
-    return result;
+    Utilities::System::MemoryStats stats;
+    Utilities::System::get_memory_stats(stats);
+    return 1024. * stats.VmHWM;
   }
 
 
@@ -123,136 +93,133 @@ namespace Benchmark
 
 
 
+  // Makes the displacements of all nodes in contact prescribed ones.
+  template <int dim>
+  NodalConstraints<dim>
+  bond(const DiscreteProblem<dim> &problem,
+       const VectorType           &u,
+       const ContactState         &state)
+  {
+    NodalConstraints<dim> bonded = problem.constraints;
+    for (unsigned int p = 0; p < problem.contact.size(); ++p)
+      if (state.in_contact(p))
+        for (unsigned int d = 0; d < dim; ++d)
+          bonded.prescribe(problem.contact[p].node,
+                           d,
+                           u.local_element(dim * problem.contact[p].node + d));
+    return bonded;
+  }
+
+
+
+  void
+  demand_convergence(const SolverReport &report)
+  {
+    AssertThrow(
+      report.converged,
+      ExcMessage("A benchmark that does not converge measures nothing: " +
+                 report.certificate.describe()));
+  }
+
+
+
   template <int dim>
   void
-  run(const Parameters &parameters, const unsigned int n_refinements)
+  run(const Parameters &parameters)
   {
-    const Scene<dim> scene(parameters);
-    auto             mesh = make_triangulation<dim>();
-    scene.make_coarse_mesh(*mesh);
-
-    const double triad = triad_bandwidth();
-    std::printf("scene %s, F = %g; triad %.1f GB/s\n",
+    std::printf("scene %s, F = %g\n",
                 parameters.name.c_str(),
-                scene.friction_coefficient(),
-                triad * 1e-9);
+                parameters.contact.friction_coefficient);
     std::printf("    dofs  contact  sticky | cycles   solve   us/dof  updates |"
-                " linear   solve | ratio | sweep/triad\n");
+                " linear   solve | ratio  per sweep\n");
 
-    VectorType u, tractions;
-    auto discretization = std::make_unique<Discretization<dim>>(scene, *mesh);
-    u                   = discretization->admissible_start();
-    tractions.reinit(u);
-    for (unsigned int level = 0;; ++level)
+    NestedIteration<dim> nest(parameters);
+    MultigridCost        cost;
+    double               seconds;
+    do
       {
-        const auto   problem    = discretization->problem();
-        VectorType   start      = u;
-        ContactState state      = make_initial_guess(start,
-                                                tractions,
-                                                problem.constraints,
-                                                problem.contact,
-                                                problem.has_friction());
-        u                       = start;
-        const Solution friction = solve(*discretization,
-                                        problem,
-                                        *discretization->hierarchy,
-                                        parameters.solver,
-                                        u,
-                                        state);
+        nest.solve();
+        demand_convergence(nest.report);
+        cost                               = nest.cost;
+        seconds                            = nest.solve_seconds;
+        const Discretization<dim> &d       = *nest.discretization;
+        const auto                 problem = d.problem();
 
-        // The bonded problem.
-        NodalConstraints<dim> bonded = *discretization->constraints;
-        for (unsigned int p = 0; p < problem.contact.size(); ++p)
-          if (state.in_contact(p))
-            for (unsigned int d = 0; d < dim; ++d)
-              bonded.prescribe(
-                problem.contact[p].node,
-                d,
-                u.local_element(dim * problem.contact[p].node + d));
-        const ContactBoundary<dim> nothing(discretization->mapping,
-                                           discretization->dof_handler,
-                                           discretization->hanging,
+        const NodalConstraints<dim> bonded =
+          bond(problem, nest.displacement, nest.state);
+        const ContactBoundary<dim> nothing(d.mapping,
+                                           d.dof_handler,
+                                           d.hanging,
                                            bonded,
                                            numbers::invalid_boundary_id,
                                            Obstacle<dim>(),
                                            ContactNormal::body);
-        const LevelHierarchy<dim>  hierarchy(discretization->dof_handler,
-                                            bonded);
-        const DiscreteProblem<dim> linear_problem = {problem.matrix,
-                                                     problem.forces,
-                                                     bonded,
-                                                     nothing,
-                                                     FrictionLaw::none,
-                                                     0.};
-        bonded.impose(start);
-        ContactState   no_state(0, false);
-        const Solution linear = solve(*discretization,
-                                      linear_problem,
-                                      hierarchy,
-                                      parameters.solver,
-                                      start,
-                                      no_state);
+        const LevelHierarchy<dim>  hierarchy(d.dof_handler, bonded);
+        CoulombSolver<dim>         linear_solver(d.dof_handler,
+                                         hierarchy,
+                                         {problem.matrix,
+                                                  problem.forces,
+                                                  bonded,
+                                                  nothing,
+                                                  FrictionLaw::none,
+                                                  0.},
+                                         parameters.solver);
+        VectorType                 u;
+        ContactState               no_state(0, false);
+        nest.make_guess(u);
+        bonded.impose(u);
+        Timer              timer;
+        const SolverReport linear       = linear_solver.solve(u, no_state);
+        const double       linear_solve = timer.wall_time();
+        demand_convergence(linear);
+        const MultigridCost &linear_cost = linear_solver.multigrid().cost();
 
-        const unsigned int n_dofs = discretization->dof_handler.n_dofs();
+        const unsigned int n_dofs = d.dof_handler.n_dofs();
         std::printf(
-          "%8u %8u %7u | %6u %7.3f  %7.3f  %6.1f%% | %6u %7.3f | %5.2f |",
+          "%8u %8u %7u | %6u %7.3f  %7.3f  %6.1f%% | %6u %7.3f | %5.2f %9.2f\n",
           n_dofs,
-          state.n_contact(),
-          state.n_sticking(),
-          friction.cycles,
-          friction.seconds,
-          1e6 * friction.seconds / n_dofs,
-          100. * friction.cost.matrix_updates / friction.seconds,
-          linear.cycles,
-          linear.seconds,
-          friction.seconds / linear.seconds);
-        if (n_dofs > 200000)
-          std::printf(" %4.0f%%\n",
-                      100. * sweep_bandwidth(problem, u, state) / triad);
-        else
-          std::printf("\n");
+          nest.state.n_contact(),
+          nest.state.n_sticking(),
+          static_cast<unsigned int>(nest.report.cycles.size()),
+          seconds,
+          1e6 * seconds / n_dofs,
+          100. * cost.matrix_updates / seconds,
+          static_cast<unsigned int>(linear.cycles.size()),
+          linear_solve,
+          seconds / linear_solve,
+          (cost.leading_sweeps / cost.n_leading_sweeps) /
+            (linear_cost.leading_sweeps / linear_cost.n_leading_sweeps));
         std::fflush(stdout);
+    } while (nest.refine());
 
-        if (level == n_refinements)
-          {
-            std::printf(
-              "shares of the solve time: leading sweeps %.0f%%, coarse "
-              "cycle %.0f%%, updates %.1f%%, recombination and line "
-              "search %.0f%%\n\n",
-              100. * friction.cost.leading_sweeps / friction.seconds,
-              100. * friction.cost.coarse_correction / friction.seconds,
-              100. * friction.cost.matrix_updates / friction.seconds,
-              100. * friction.cost.line_search / friction.seconds);
-            return;
-          }
+    std::printf("shares of the solve time: leading sweeps %.0f%%, coarse "
+                "cycle %.0f%%, updates %.1f%%, recombination and line "
+                "search %.0f%%\n",
+                100. * cost.leading_sweeps / seconds,
+                100. * cost.coarse_correction / seconds,
+                100. * cost.matrix_updates / seconds,
+                100. * cost.line_search / seconds);
 
-        discretization->hanging.distribute(u);
-        u.update_ghost_values();
-        tractions = contact_tractions(friction.report.residual,
-                                      problem.constraints,
-                                      problem.contact,
-                                      state);
-        tractions.update_ghost_values();
-        parallel::distributed::SolutionTransfer<dim, VectorType> transfer(
-          discretization->dof_handler);
-        mesh->set_all_refine_flags();
-        mesh->prepare_coarsening_and_refinement();
-        transfer.prepare_for_coarsening_and_refinement({&u, &tractions});
-        mesh->execute_coarsening_and_refinement();
-        // The transfer speaks to the old DoFHandler, which therefore is to know
-        // the new mesh, with the numbering of the new one.
-        discretization->dof_handler.distribute_dofs(discretization->fe);
-        discretization->dof_handler.distribute_mg_dofs();
-        renumber_nodes(discretization->dof_handler);
-        auto       next = std::make_unique<Discretization<dim>>(scene, *mesh);
-        VectorType new_u(next->constraints->partitioner());
-        VectorType new_tractions(next->constraints->partitioner());
-        std::vector<VectorType *> all = {&new_u, &new_tractions};
-        transfer.interpolate(all);
-        u              = new_u;
-        tractions      = new_tractions;
-        discretization = std::move(next);
-      }
+    // What holds the memory.
+    const Discretization<dim> &d = *nest.discretization;
+    const CoulombSolver<dim>   solver(
+      d.dof_handler, *d.hierarchy, d.problem(), parameters.solver);
+    const double n_dofs = d.dof_handler.n_dofs();
+    std::printf("bytes per dof: leaf matrix %.0f, level hierarchy %.0f, "
+                "smoother and level matrices %.0f; peak of the process %.0f\n",
+                d.matrix.memory_consumption() / n_dofs,
+                d.hierarchy->memory_consumption() / n_dofs,
+                solver.multigrid().memory_consumption() / n_dofs,
+                peak_memory() / n_dofs);
+
+    // After the peak of the memory has been read.
+    const double triad = triad_bandwidth();
+    std::printf("triad %.1f GB/s; a leading sweep on the last mesh runs at "
+                "%.0f%% of it\n\n",
+                triad * 1e-9,
+                100. *
+                  sweep_bandwidth(d.problem(), nest.displacement, nest.state) /
+                  triad);
   }
 } // namespace Benchmark
 
@@ -264,16 +231,19 @@ main(int argc, char *argv[])
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   try
     {
-      if (argc < 3)
+      const std::string dimension = argc < 3 ? "" : argv[1];
+      if (dimension != "2" && dimension != "3")
         {
-          std::cerr << "Usage: benchmark-cost scene.prm refinements "
+          std::cerr << "Usage: benchmark-cost 2|3 scene.prm "
                        "[Section/Entry=value ...]\n";
           return 2;
         }
-      Benchmark::run<2>(
-        Friction::read_parameters(
-          argv[1], std::vector<std::string>(argv + 3, argv + argc)),
-        std::stoi(argv[2]));
+      const Friction::Parameters parameters = Friction::read_parameters(
+        argv[2], std::vector<std::string>(argv + 3, argv + argc));
+      if (dimension == "2")
+        Benchmark::run<2>(parameters);
+      else
+        Benchmark::run<3>(parameters);
     }
   catch (const std::exception &error)
     {

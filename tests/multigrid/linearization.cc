@@ -93,10 +93,11 @@ namespace
     bool         zero_inside = true, curvature = false, keeps_sign = true;
     unsigned int n_at_bound = 0;
 
-    Linearization<dim> linearization(
-      constraints, contact, friction, TruncationVariant::phases);
+    const NodeBlockMatrix<dim> &matrix = problem.discretization->matrix;
+    Linearization<dim>          linearization(
+      matrix, constraints, contact, friction, TruncationVariant::phases);
     Linearization<dim> all_contact(
-      constraints, contact, friction, TruncationVariant::contact);
+      matrix, constraints, contact, friction, TruncationVariant::contact);
     for (unsigned int sample = 0; sample < 30; ++sample)
       {
         const Iterate it = make_iterate(problem, random);

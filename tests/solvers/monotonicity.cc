@@ -175,7 +175,7 @@ namespace
     const double              F = problem.friction_coefficient;
     const MonotoneSmoother<2> smoother(d.matrix, *d.constraints, *d.contact, F);
     Linearization<2>          linearization(
-      *d.constraints, *d.contact, F, TruncationVariant::phases);
+      d.matrix, *d.constraints, *d.contact, F, TruncationVariant::phases);
     CoarseCycle<2> coarse(
       d.dof_handler, d.matrix, *d.hierarchy, *d.constraints, cycle, 6);
 
@@ -538,7 +538,8 @@ namespace
     MonotoneMultigrid<2>     multigrid(
       d.dof_handler, *d.hierarchy, problem, SolverSettings());
     multigrid.solve(u, state, false);
-    Linearization<2> linearization(*d.constraints,
+    Linearization<2> linearization(d.matrix,
+                                   *d.constraints,
                                    *d.contact,
                                    problem.friction_coefficient,
                                    TruncationVariant::phases);

@@ -1,10 +1,12 @@
 #ifndef friction_tests_support_nested_iteration_h
 #define friction_tests_support_nested_iteration_h
 
+#include <common/estimate/contact_estimate.h>
 #include <common/estimate/marking.h>
-#include <common/estimate/residual_estimator.h>
 #include <common/solvers/coulomb_solver.h>
 #include <common/solvers/initial_guess.h>
+
+#include <deal.II/base/timer.h>
 
 #include <deal.II/distributed/solution_transfer.h>
 
@@ -53,16 +55,19 @@ namespace Tests
     /** Solves with other settings, starting from the same guess, and leaves
      * the iteration over the levels alone. */
     SolverReport
-    solve_with(const SolverSettings &settings,
-               VectorType           &u,
-               ContactState         &s) const
+    solve_with(const SolverSettings &settings, VectorType &u, ContactState &s)
     {
       s = make_guess(u);
+      Timer              timer;
       CoulombSolver<dim> solver(discretization->dof_handler,
                                 *discretization->hierarchy,
                                 discretization->problem(),
                                 settings);
-      SolverReport       result = solver.solve(u, s);
+      setup_seconds = timer.wall_time();
+      timer.restart();
+      SolverReport result = solver.solve(u, s);
+      solve_seconds       = timer.wall_time();
+      cost                = solver.multigrid().cost();
       discretization->hanging.distribute(u);
       return result;
     }
@@ -143,6 +148,10 @@ namespace Tests
     ContactState state = ContactState(0, false);
     SolverReport report;
 
+    /// Of the last solution, by whatever settings.
+    double        setup_seconds = 0, solve_seconds = 0;
+    MultigridCost cost;
+
   private:
     void
     discretize()
@@ -154,52 +163,19 @@ namespace Tests
     mark()
     {
       const Discretization<dim> &d = *discretization;
-      EstimatorProblem<dim>      problem;
-      problem.lambda               = scene.material().lambda();
-      problem.mu                   = scene.material().mu();
-      problem.body_force           = scene.body_force().get();
-      problem.contact_boundary     = scene.contact_boundary_id();
-      problem.friction_coefficient = scene.friction_coefficient();
-      for (const auto &condition : scene.traction_conditions())
-        problem.tractions[condition.boundary_id] = condition.traction.get();
-      for (const auto &condition : scene.dirichlet_conditions())
-        problem.dirichlet[condition.boundary_id] = condition.components;
-
-      VectorType normal(d.constraints->partitioner()), gap(normal);
-      for (const ContactNode<dim> &node : *d.contact)
-        for (unsigned int c = 0; c < dim; ++c)
-          {
-            normal.local_element(dim * node.node + c) = node.normal()[c];
-            gap.local_element(dim * node.node + c) =
-              node.gap * node.normal()[c];
-          }
-      for (VectorType *vector : {&normal, &gap})
-        {
-          d.hanging.distribute(*vector);
-          vector->update_ghost_values();
-        }
-      EstimatorContact contact;
-      contact.traction   = &tractions;
-      contact.normal     = &normal;
-      contact.gap_vector = &gap;
-      mark_by_maximum(
-        *mesh,
-        estimate_error(d.mapping, d.dof_handler, problem, displacement, contact)
-          .cell_errors,
-        parameters.refinement.marking);
-
+      mark_by_maximum(*mesh,
+                      estimate_contact_error(scene,
+                                             d.mapping,
+                                             d.dof_handler,
+                                             d.hanging,
+                                             *d.constraints,
+                                             *d.contact,
+                                             displacement,
+                                             tractions)
+                        .cell_errors,
+                      parameters.refinement.marking);
       if (parameters.refinement.contact_zone)
-        {
-          std::vector<bool> touches(d.constraints->n_nodes(), false);
-          for (unsigned int p = 0; p < d.contact->size(); ++p)
-            touches[(*d.contact)[p].node] = state.in_contact(p);
-          for (const auto &cell : d.dof_handler.active_cell_iterators())
-            if (cell->at_boundary())
-              for (const unsigned int v : cell->vertex_indices())
-                if (touches[d.constraints->node_of_dof(
-                      cell->vertex_dof_index(v, 0))])
-                  cell->set_refine_flag();
-        }
+        mark_contact_zone(d.dof_handler, *d.constraints, *d.contact, state);
     }
   };
 

@@ -4,11 +4,12 @@
 # compared with a bound, and rates not at all: they depend on the order of nodes
 # and on rounding.
 #
-# Usage: scene.sh PROGRAM SCENE EXPECTED NUMDIFF
+# Usage: scene.sh PROGRAM SCENE EXPECTED NUMDIFF CYCLES
 program=$1
 scene=$2
 expected=$3
 numdiff=$4
+cycles=$5
 
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
@@ -21,7 +22,7 @@ if [ $status -ne 0 ]; then
   exit 1
 fi
 
-awk -v bound=20 '
+awk -v bound="$cycles" '
   /^level/ && NF == 9 {print $1, $2, $3, $4, $5, $6, $7, $9; next}
   NF == 9 && $1 ~ /^[0-9]+$/ {
     print $1, $2, $3, $4, $5, $6, ($7 <= bound ? "few" : $7), $9

@@ -1,0 +1,115 @@
+#include <common/compatibility.h>
+#include <common/estimate/exact_error.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/base/symmetric_tensor.h>
+
+#include <deal.II/fe/fe_values.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <vector>
+
+namespace Friction
+{
+  using namespace dealii;
+
+  bool
+  ExactError::is_exact() const
+  {
+    return node <= 1e-10 * node_size;
+  }
+
+
+
+  std::string
+  ExactError::describe(const double last_energy) const
+  {
+    std::ostringstream text;
+    text << std::scientific << std::setprecision(2)
+         << "         error against the exact solution: energy norm " << energy;
+    if (last_energy > 0 && !is_exact())
+      text << std::fixed << " (order " << std::log2(last_energy / energy) << ")"
+           << std::scientific;
+    if (is_exact())
+      text << ", nodes exact to 1e-10";
+    else
+      text << ", nodes " << node / node_size << " of the largest";
+    return text.str();
+  }
+
+
+
+  template <int dim>
+  ExactError
+  compute_exact_error(const Mapping<dim>    &mapping,
+                      const DoFHandler<dim> &dof_handler,
+                      const Material        &material,
+                      const Function<dim>   &exact,
+                      const LinearAlgebra::distributed::Vector<double> &u_h)
+  {
+    const QGauss<dim>                    quadrature(4);
+    FEValues<dim>                        fe_values(mapping,
+                            dof_handler.get_fe(),
+                            quadrature,
+                            update_gradients | update_quadrature_points |
+                              update_JxW_values);
+    const FEValuesExtractors::Vector     displacement(0);
+    std::vector<SymmetricTensor<2, dim>> strains(quadrature.size());
+    Vector<double>                       value(dim);
+
+    double square = 0, node = 0, node_size = 0;
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          fe_values.reinit(cell);
+          fe_values[displacement].get_function_symmetric_gradients(u_h,
+                                                                   strains);
+          for (const unsigned int q : fe_values.quadrature_point_indices())
+            {
+              Tensor<2, dim> gradient;
+              for (unsigned int c = 0; c < dim; ++c)
+                gradient[c] = exact.gradient(fe_values.quadrature_point(q), c);
+              const SymmetricTensor<2, dim> e =
+                symmetrize(gradient) - strains[q];
+              square += (material.lambda() * trace(e) * trace(e) +
+                         2. * material.mu() * (e * e)) *
+                fe_values.JxW(q);
+            }
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              exact.vector_value(cell->vertex(v), value);
+              for (unsigned int d = 0; d < dim; ++d)
+                {
+                  node = std::max(
+                    node,
+                    std::abs(value[d] - u_h(cell->vertex_dof_index(v, d))));
+                  node_size = std::max(node_size, std::abs(value[d]));
+                }
+            }
+        }
+
+    const MPI_Comm communicator = Compatibility::mpi_communicator(dof_handler);
+    return {std::sqrt(Utilities::MPI::sum(square, communicator)),
+            Utilities::MPI::max(node, communicator),
+            Utilities::MPI::max(node_size, communicator)};
+  }
+
+
+
+  template ExactError
+  compute_exact_error(const Mapping<2> &,
+                      const DoFHandler<2> &,
+                      const Material &,
+                      const Function<2> &,
+                      const LinearAlgebra::distributed::Vector<double> &);
+  template ExactError
+  compute_exact_error(const Mapping<3> &,
+                      const DoFHandler<3> &,
+                      const Material &,
+                      const Function<3> &,
+                      const LinearAlgebra::distributed::Vector<double> &);
+} // namespace Friction

@@ -1,0 +1,121 @@
+#include <common/output/level_records.h>
+
+#include <deal.II/base/numbers.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Friction
+{
+  namespace
+  {
+    template <int dim>
+    double
+    half_width(const double measure)
+    {
+      return dim == 2 ? .5 * measure : std::sqrt(measure / numbers::PI);
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  LevelRecords<dim>
+  make_level_records(const unsigned int           level,
+                     const DoFHandler<dim>       &dof_handler,
+                     const NodalConstraints<dim> &constraints,
+                     const ContactBoundary<dim>  &contact_boundary,
+                     const VectorType            &displacement,
+                     const ContactState          &state,
+                     const SolverReport          &report)
+  {
+    LevelRecords<dim> records;
+
+    LevelRecord &record = records.level;
+    record.level        = level;
+    record.cells = dof_handler.get_triangulation().n_global_active_cells();
+    record.dofs  = dof_handler.n_dofs();
+    record.contact_nodes       = state.n_contact();
+    record.sticky_nodes        = state.n_sticking();
+    record.outer_iterations    = report.outer_iterations;
+    record.cycles              = report.cycles.size();
+    record.contraction         = report.contraction;
+    record.energy              = report.energy;
+    record.rho_tau             = report.rho_tau_as_printed();
+    record.rho_tau_contraction = report.rho_tau_contraction();
+    record.certificate         = report.certificate.largest();
+
+    Tensor<1, dim> tangential_force;
+    double         contact_measure = 0, stick_measure = 0;
+    for (unsigned int p = 0; p < contact_boundary.size(); ++p)
+      {
+        const ContactNode<dim> &node = contact_boundary[p];
+        ContactRecord<dim>      row;
+        row.dof   = constraints.partitioner()->local_to_global(dim * node.node);
+        row.point = node.point;
+        row.normal  = node.normal();
+        row.gap     = node.gap;
+        row.measure = node.measure;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            row.displacement[d] =
+              displacement.local_element(dim * node.node + d);
+            row.force[d] = -report.residual.local_element(dim * node.node + d);
+          }
+        row.state = !state.in_contact(p) ? 0 : state.sticks(p) ? 2 : 1;
+        records.contact.push_back(row);
+
+        const double normal_force = -row.force * row.normal;
+        tangential_force += row.force + normal_force * row.normal;
+        if (row.state > 0)
+          {
+            record.normal_force += normal_force;
+            record.max_pressure =
+              std::max(record.max_pressure, normal_force / row.measure);
+            contact_measure += row.measure;
+            if (row.state == 2)
+              stick_measure += row.measure;
+          }
+      }
+    record.tangential_force   = tangential_force.norm();
+    record.contact_half_width = half_width<dim>(contact_measure);
+    record.stick_half_width   = half_width<dim>(stick_measure);
+
+    for (const CycleInfo &info : report.cycles)
+      {
+        CycleRecord row;
+        row.level     = level;
+        row.increment = info.increment;
+        row.energy    = info.energy;
+        row.damping   = info.damping;
+        row.truncated = info.truncated;
+        row.residual  = info.residual;
+        records.cycles.push_back(row);
+      }
+    for (const double change : report.outer_changes)
+      {
+        OuterRecord row;
+        row.level  = level;
+        row.change = change;
+        records.outer.push_back(row);
+      }
+    return records;
+  }
+
+
+
+  template LevelRecords<2> make_level_records(const unsigned int,
+                                              const DoFHandler<2> &,
+                                              const NodalConstraints<2> &,
+                                              const ContactBoundary<2> &,
+                                              const VectorType &,
+                                              const ContactState &,
+                                              const SolverReport &);
+  template LevelRecords<3> make_level_records(const unsigned int,
+                                              const DoFHandler<3> &,
+                                              const NodalConstraints<3> &,
+                                              const ContactBoundary<3> &,
+                                              const VectorType &,
+                                              const ContactState &,
+                                              const SolverReport &);
+} // namespace Friction

@@ -1,0 +1,54 @@
+#ifndef friction_output_level_records_h
+#define friction_output_level_records_h
+
+#include <common/output/history.h>
+#include <common/solvers/coulomb_solver.h>
+
+#include <vector>
+
+namespace Friction
+{
+  /** All records of one level; see History. */
+  template <int dim>
+  struct LevelRecords
+  {
+    LevelRecord                     level;
+    std::vector<CycleRecord>        cycles;
+    std::vector<ContactRecord<dim>> contact;
+    std::vector<OuterRecord>        outer;
+  };
+
+  /**
+   * Turns what the solver has found on a level into records.
+   *
+   * The solver's residual is $f-Au$, so that the force of the obstacle on the
+   * body, $R=Au-f$, is its negative; $\tau(p)=-R(p)\cdot n(p)$ is positive in
+   * contact, and over the nodal measure a pressure. From the nodes are summed
+   * up
+   * - the numbers of nodes in contact, and sticking: flags of the state;
+   * - the normal forces, and the vectors of the tangential forces. Where a
+   *   scene is symmetric, the latter cancel, and a norm near zero does not mean
+   *   that there is no friction;
+   * - the measure of the zones of contact and stick. In two dimensions their
+   *   half-widths are half of it, and sensible only if the zone is connected;
+   *   in three they are the radii of circles of that area. The edge of a zone
+   *   is not known better than to a cell.
+   *
+   * The number of cycles is that of all outer iterations; there is one of these
+   * unless Algorithm 2 is used. The estimated error and the seconds are left to
+   * the caller.
+   *
+   * @param report  of the solution @p displacement, @p state.
+   */
+  template <int dim>
+  LevelRecords<dim>
+  make_level_records(const unsigned int           level,
+                     const DoFHandler<dim>       &dof_handler,
+                     const NodalConstraints<dim> &constraints,
+                     const ContactBoundary<dim>  &contact_boundary,
+                     const VectorType            &displacement,
+                     const ContactState          &state,
+                     const SolverReport          &report);
+} // namespace Friction
+
+#endif

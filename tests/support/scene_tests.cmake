@@ -1,0 +1,28 @@
+# Every shipped scene of a step program runs in a test: NAME.prm.in is the
+# shipped file, put in place of @scene_NAME@, and after it what shortens the run.
+#
+# Not one of deal.II's own parameter file tests, since those would compare
+# numbers of cycles to the last one; BOUND is what they must not exceed.
+function(add_scene_tests PROGRAM BOUND)
+  file(GLOB _scenes CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${PROGRAM}/scenes/*.prm)
+  foreach(_scene ${_scenes})
+    get_filename_component(_name ${_scene} NAME_WE)
+    if(NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.prm.in)
+      message(FATAL_ERROR "The scene ${_scene} has no test: write "
+        "${CMAKE_CURRENT_SOURCE_DIR}/${_name}.prm.in and ${_name}.output.")
+    endif()
+    file(READ ${_scene} scene_${_name})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${_scene})
+    configure_file(${_name}.prm.in ${_name}.prm @ONLY)
+
+    add_test(NAME ${PROGRAM}/${_name}
+      COMMAND sh ${CMAKE_SOURCE_DIR}/tests/support/scene.sh
+        $<TARGET_FILE:${PROGRAM}>
+        ${CMAKE_CURRENT_BINARY_DIR}/${_name}.prm
+        ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.output
+        ${NUMDIFF_EXECUTABLE}
+        ${BOUND})
+    set_tests_properties(${PROGRAM}/${_name} PROPERTIES
+      LABELS ${PROGRAM} TIMEOUT ${TEST_TIME_LIMIT})
+  endforeach()
+endfunction()
