@@ -308,6 +308,11 @@ namespace Friction
             uzawa_tolerance * scale)
           return from_eigenbasis(S * n_1, S * n_2);
       }
-    return solve_secular_equation(b, s);
+
+    unsigned int                n_more;
+    const std::array<double, 2> v = solve_secular_equation(b, s, &n_more);
+    if (n_iterations != nullptr)
+      *n_iterations = maximum_uzawa_steps + n_more;
+    return v;
   }
 } // namespace Friction

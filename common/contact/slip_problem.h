@@ -52,19 +52,21 @@ namespace Friction
    * @f[ (S \lambda_i + s) n_i = b_i, \quad i = 1,2, \quad |n| = 1. @f]
    *
    * To eliminate $n$ gives the secular equation
-   * $|(S A + s I)^{-1} b| = 1$ for $S$, the equation of trust region methods.
-   * The method of choice there, Newton's for
-   * $1/|(S A + s I)^{-1} b|$, converges from below without any safeguard since
-   * that function is concave, but only by a factor of 3/2 per step if most of
-   * $b$ is along the second eigenvector, $b_2 \approx s$, and $\lambda_2$ is
-   * small. To eliminate $S$ instead gives an equation for the direction alone,
-   * $t = n_2/n_1 > 0$ (signs are those of $b$):
-   * @f[ \lambda_2 b_1 t
-   *     + (\lambda_1-\lambda_2) s \frac{t}{\sqrt{1+t^2}} = \lambda_1 b_2. @f]
-   * Its left side increases and is concave; written for $1/t$ where $t>1$ it
-   * is convex. There are close bounds to start from, and nothing special
-   * happens when $v$ vanishes, $|b| \to s$. That is what Newton's method for
-   * $v$ itself suffers from (Remark 6.6). Then the square of the inclusion,
+   * $|(S A + s I)^{-1} b| = 1$ for $S$, known from trust region methods. The
+   * method of choice there, Newton's for $1/|(S A + s I)^{-1} b|$, converges
+   * from below without any safeguard since that function is concave. But $S$
+   * only grows by a factor of 3/2 per step as long as it is much too small,
+   * which happens if $|b_2|$ is slightly less than $s$ and $\lambda_2$ is
+   * small. To eliminate $S$ instead gives an equation for the direction alone:
+   * $t = |n_2/n_1|$ is the only positive solution of
+   * @f[ \lambda_2 |b_1| t
+   *     + (\lambda_1-\lambda_2) s \frac{t}{\sqrt{1+t^2}}
+   *     = \lambda_1 |b_2|. @f]
+   * The left side increases, from zero, and is concave; written for $1/t$ where
+   * $t>1$ it is convex. There are close bounds to start from, and four steps
+   * are enough. Nothing special happens where the slip vanishes, $|b| \to s$,
+   * since the direction does not: Newton's method for $v$ itself fails there
+   * (Remark 6.6). Finally, the square of the inclusion,
    * @f[ |b|^2 - s^2 = 2 s S\, n^T A n + S^2 |A n|^2, @f]
    * is a quadratic equation for $S$ whose terms are all positive, so that $S$
    * is as accurate as $|b|^2-s^2$ is.
@@ -126,8 +128,8 @@ namespace Friction
      * uzawa_tolerance*|b|. If it does not after maximum_uzawa_steps, the
      * problem is solved by the secular equation.
      *
-     * @param n_iterations  if given, where to put the number of steps, which is
-     *                      maximum_uzawa_steps if that was not enough.
+     * @param n_iterations  if given, where to put the number of steps; more
+     * than maximum_uzawa_steps if that was not enough.
      */
     std::array<double, 2>
     solve_uzawa(const std::array<double, 2> &b,
