@@ -40,17 +40,21 @@ namespace Friction
     }
 
     /**
-     * Infinite rods of the same radius through the given points.
+     * Rods of the same radius through the given points, infinite unless a
+     * length is given. Of rods that end, only the round surface is an obstacle.
      *
-     * @param centers a point on the axis of each rod
+     * @param centers a point on the axis of each rod, the middle one if the
+     *   rods have an end
      * @param axes directions of the axes, of any positive length; not used,
      *   and may be empty, in two dimensions
      * @param radius of all rods, a length
+     * @param length of all rods
      */
     static Obstacle
     make_rods(const std::vector<Point<dim>>     &centers,
               const std::vector<Tensor<1, dim>> &axes,
-              const double                       radius)
+              const double                       radius,
+              const double length = std::numeric_limits<double>::infinity())
     {
       Assert(dim == 2 || axes.size() == centers.size(),
              ExcDimensionMismatch(axes.size(), centers.size()));
@@ -62,7 +66,7 @@ namespace Friction
           Tensor<1, dim> axis;
           if (dim == 3)
             axis = axes[i] / axes[i].norm();
-          obstacle.rods.push_back({centers[i], axis, radius});
+          obstacle.rods.push_back({centers[i], axis, radius, length});
         }
       return obstacle;
     }
@@ -107,15 +111,20 @@ namespace Friction
           const bool behind = (excess > 0. && along <= 0.);
           if (flat || behind)
             continue;
-          gap = std::min(gap, (along - std::sqrt(discriminant)) / n_sqr);
+          const double distance = (along - std::sqrt(discriminant)) / n_sqr;
+          const double from_middle =
+            (p + distance * direction - rod.center) * rod.axis;
+          // What ends exactly there shall not be a matter of rounding.
+          if (std::abs(from_middle) <= (.5 + 1e-10) * rod.length)
+            gap = std::min(gap, distance);
         }
       return gap;
     }
 
     /**
      * The unit vector from @p p straight towards the (nearest part of the)
-     * obstacle; from inside, the one that led there. There must be an
-     * obstacle.
+     * obstacle; from inside, the one that led there. Beyond the end of a rod,
+     * to where it would be if it were longer. There must be an obstacle.
      */
     Tensor<1, dim>
     normal(const Point<dim> &p) const
@@ -157,6 +166,7 @@ namespace Friction
       Point<dim>     center;
       Tensor<1, dim> axis;
       double         radius;
+      double         length;
     };
 
     static constexpr double flattest_cosine = .05;

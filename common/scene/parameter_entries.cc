@@ -32,24 +32,52 @@ namespace Friction
       {"Scene",
        "Geometry",
        "rectangle",
-       choice("half disc|rectangle|mesh file"),
-       "The body. 'half disc': centre at the origin, flat top y=0, boundary "
-       "ids 0 (arc) and 1 (flat top). 'rectangle': [0,L]x[0,H], boundary ids "
-       "0 (left), 1 (right), 2 (bottom), 3 (top); a box in 3D, with 2, 3 in "
-       "y direction and 4, 5 in z direction. 'mesh file': physical ids are "
-       "the boundary ids."},
+       choice("half disc|rectangle|cylinder|half cylinder|half ball|"
+              "mesh file"),
+       "The body. 'half disc' (2D): centre at the origin, flat top y=0, "
+       "boundary ids 0 (arc) and 1 (flat top). 'rectangle': [0,L]x[0,H], "
+       "boundary ids 0 (left), 1 (right), 2 (bottom), 3 (top); a box in 3D, "
+       "with 2, 3 in y direction and 4 (bottom), 5 (top) in z direction. "
+       "'cylinder' (3D): around the z axis, boundary ids 0 (mantle), 1 (end "
+       "z=0), 2 (end z=L). 'half cylinder' (3D): the half disc along 0<z<L, "
+       "boundary ids 0 (mantle), 1 (flat top), 2 (end z=0), 3 (end z=L). "
+       "'half ball' (3D): centre at the origin, flat top z=0, boundary ids 0 "
+       "(sphere) and 1 (flat top). 'mesh file': physical ids are the boundary "
+       "ids."},
       {"Scene",
        "Size",
-       "1, 1",
+       "",
        text,
        "Edge lengths of the rectangle, one per dimension; constant "
-       "expressions [length]."},
+       "expressions, all 1 if empty [length]."},
       {"Scene",
        "Subdivisions",
-       "1, 1",
+       "",
        text,
-       "Number of coarse cells of the rectangle, one per dimension."},
-      {"Scene", "Radius", "1", positive, "Radius of the half disc [length]."},
+       "Number of coarse cells of the rectangle, one per dimension; all 1 if "
+       "empty."},
+      {"Scene",
+       "Radius",
+       "1",
+       positive,
+       "Radius of the half disc, the cylinders, the half ball [length]."},
+      {"Scene",
+       "Length",
+       "2",
+       positive,
+       "Length of the cylinders in z direction [length]."},
+      {"Scene",
+       "Coarse grid",
+       "O-grid",
+       choice("O-grid|one cell"),
+       "Of the cylinder. 'O-grid': good cells however fine the mesh. 'one "
+       "cell': a single one, whose refinements degenerate at the mantle."},
+      {"Scene",
+       "Layers",
+       "0",
+       make(Patterns::Integer(0, 100000)),
+       "Number of layers of coarse cells along the cylinders, unless there is "
+       "but one cell; 0 for as many as make cells about as long as wide."},
       {"Scene",
        "Mesh file",
        "",
@@ -68,7 +96,7 @@ namespace Friction
        "0",
        number,
        "Turn everything, mesh, obstacle, loads and prescribed displacements, "
-       "by this angle around the origin [degrees]."},
+       "by this angle around the origin, in 3D around the z axis [degrees]."},
       {"Scene",
        "Constants",
        "",
@@ -104,14 +132,16 @@ namespace Friction
        "The rigid obstacle: a half space, or circular rods (discs in 2D)."},
       {"Obstacle",
        "Point",
-       "0, 0",
+       "",
        text,
-       "A point of the plane; constant expressions [length]."},
+       "A point of the plane; constant expressions, the origin if empty "
+       "[length]."},
       {"Obstacle",
        "Normal",
-       "0, -1",
+       "",
        text,
-       "Normal of the plane, into the obstacle, of any length."},
+       "Normal of the plane, into the obstacle, of any length; straight down, "
+       "against the last coordinate, if empty."},
       {"Obstacle",
        "Centers",
        "",
@@ -123,24 +153,33 @@ namespace Friction
        text,
        "3D: direction of the axis of each rod, separated by ';'."},
       {"Obstacle", "Radius", "1", positive, "Of the rods [length]."},
+      {"Obstacle",
+       "Length",
+       "",
+       text,
+       "3D: length of the rods, the given points being their middles; a "
+       "constant expression, infinite if empty [length]."},
 
       {"Boundary conditions",
        "Displacement",
        "",
        text,
-       "Prescribed displacements, 'id: u_x, u_y', separated by ';'. Each "
-       "component is an expression in x, y (and z), or 'free' [length]."},
+       "Prescribed displacements, 'id: u_x, u_y', in 3D 'id: u_x, u_y, u_z', "
+       "separated by ';'. Each component is an expression in x, y (and z), or "
+       "'free' [length]."},
       {"Boundary conditions",
        "Traction",
        "",
        text,
-       "Boundary stresses, 'id: t_x, t_y', separated by ';' [stress]."},
+       "Boundary stresses, 'id: t_x, t_y', in 3D 'id: t_x, t_y, t_z', "
+       "separated by ';' [stress]."},
       {"Boundary conditions",
        "Pinned points",
        "",
        text,
-       "Displacements prescribed in single vertices, '(x, y): u_x, u_y', "
-       "separated by ';', a component being constant or 'free' [length]."},
+       "Displacements prescribed in single vertices, '(x, y): u_x, u_y', in "
+       "3D '(x, y, z): u_x, u_y, u_z', separated by ';', a component being "
+       "constant or 'free' [length]."},
       {"Boundary conditions",
        "Body force",
        "",
@@ -248,6 +287,13 @@ namespace Friction
        "What coarse functions lose at a node in contact: what its phase "
        "fixes, everything, or the former without the second derivative "
        "of friction."},
+      {"Solver",
+       "Local solver",
+       "secular equation",
+       choice("secular equation|Uzawa"),
+       "3D: how the slip of a single node is found. 'secular equation': one "
+       "scalar equation for its length. 'Uzawa': an iteration for the "
+       "tangential force. In 2D there are but two directions to choose from."},
       {"Solver",
        "Inner tolerance",
        "1e-9",

@@ -526,10 +526,14 @@ namespace Friction
     {
       const std::string geometry = values.get("Scene/Geometry");
       auto             &scene    = parameters.scene;
-      scene.geometry = (geometry == "half disc"     ? GeometryKind::half_disc
-                          : geometry == "rectangle" ? GeometryKind::rectangle
-                                                    : GeometryKind::mesh_file);
-      scene.size     = vector_of("Scene/Size");
+      scene.geometry =
+        (geometry == "half disc"         ? GeometryKind::half_disc
+           : geometry == "rectangle"     ? GeometryKind::rectangle
+           : geometry == "cylinder"      ? GeometryKind::cylinder
+           : geometry == "half cylinder" ? GeometryKind::half_cylinder
+           : geometry == "half ball"     ? GeometryKind::half_ball
+                                         : GeometryKind::mesh_file);
+      scene.size = vector_of("Scene/Size");
       for (const double length : scene.size)
         if (!(length > 0.))
           throw InputError(values.subject("Scene/Size") + " is '" +
@@ -543,7 +547,12 @@ namespace Friction
                              "', but it must consist of positive integers.");
           scene.subdivisions.push_back(static_cast<unsigned int>(n));
         }
-      scene.radius    = values.number("Scene/Radius");
+      scene.radius = values.number("Scene/Radius");
+      scene.length = values.number("Scene/Length");
+      scene.layers = values.integer("Scene/Layers");
+      scene.coarse_grid =
+        (values.get("Scene/Coarse grid") == "O-grid" ? CoarseGrid::o_grid
+                                                     : CoarseGrid::one_cell);
       scene.mesh_file = values.get("Scene/Mesh file");
       if (scene.geometry == GeometryKind::mesh_file)
         {
@@ -570,6 +579,15 @@ namespace Friction
       obstacle.centers           = vectors_of("Obstacle/Centers");
       obstacle.axes              = vectors_of("Obstacle/Axes");
       obstacle.radius            = values.number("Obstacle/Radius");
+      if (!values.get("Obstacle/Length").empty())
+        {
+          obstacle.length = parameters.expressions.evaluate(
+            values.get("Obstacle/Length"), values.subject("Obstacle/Length"));
+          if (!(obstacle.length > 0.))
+            throw InputError(values.subject("Obstacle/Length") + " is '" +
+                             values.get("Obstacle/Length") +
+                             "', but it must be positive.");
+        }
       if (obstacle.kind == ObstacleKind::rods && obstacle.centers.empty())
         throw InputError(values.subject("Obstacle/Kind") +
                          " is 'rods', but there are none; set "
@@ -578,7 +596,7 @@ namespace Friction
         return std::all_of(
           v.begin(), v.end(), [](const double c) { return c == 0.; });
       };
-      if (is_zero(obstacle.normal))
+      if (!obstacle.normal.empty() && is_zero(obstacle.normal))
         throw InputError(values.subject("Obstacle/Normal") +
                          " is zero; give a direction.");
       if (std::any_of(obstacle.axes.begin(), obstacle.axes.end(), is_zero))
@@ -589,11 +607,13 @@ namespace Friction
     {
       auto &conditions        = parameters.boundary_conditions;
       conditions.displacement = read_conditions(
-        "Boundary conditions/Displacement", "id: u_x, u_y", values);
-      conditions.traction =
-        read_conditions("Boundary conditions/Traction", "id: t_x, t_y", values);
-      conditions.pinned_points = read_conditions(
-        "Boundary conditions/Pinned points", "(x, y): u_x, u_y", values);
+        "Boundary conditions/Displacement", "id: u_x, u_y (, u_z)", values);
+      conditions.traction = read_conditions(
+        "Boundary conditions/Traction", "id: t_x, t_y (, t_z)", values);
+      conditions.pinned_points =
+        read_conditions("Boundary conditions/Pinned points",
+                        "(x, y): u_x, u_y, or (x, y, z): u_x, u_y, u_z",
+                        values);
       conditions.body_force = values.get("Boundary conditions/Body force");
     }
 
@@ -646,6 +666,10 @@ namespace Friction
                              : truncation == "contact"
                              ? TruncationVariant::contact
                              : TruncationVariant::phases_without_second_order);
+      solver.local_solver =
+        (values.get("Solver/Local solver") == "secular equation"
+           ? LocalSolver::secular_equation
+           : LocalSolver::uzawa);
       solver.smoothing_steps = values.integer("Solver/Smoothing steps");
       solver.coarse_smoothing_steps =
         values.integer("Solver/Coarse smoothing steps");

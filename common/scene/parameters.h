@@ -5,6 +5,7 @@
 #include <common/scene/material.h>
 #include <common/scene/solver_settings.h>
 
+#include <limits>
 #include <map>
 #include <ostream>
 #include <string>
@@ -58,9 +59,21 @@ namespace Friction
 
   enum class GeometryKind
   {
-    half_disc, ///< lower half disc, centre at the origin, flat top y = 0
-    rectangle, ///< [0, L] x [0, H] (x [0, W]), a block
-    mesh_file  ///< a mesh in Gmsh's format
+    half_disc,     ///< lower half disc, centre at the origin, flat top y = 0
+    rectangle,     ///< [0, L] x [0, H] (x [0, W]), a block
+    cylinder,      ///< around the z axis, 0 <= z <= length
+    half_cylinder, ///< a half disc for each z, 0 <= z <= length
+    half_ball,     ///< lower half ball, centre at the origin, flat top z = 0
+    mesh_file      ///< a mesh in Gmsh's format
+  };
+
+  /**
+   * How a cylinder is cut into cells.
+   */
+  enum class CoarseGrid
+  {
+    o_grid,  ///< a core in a ring: good cells however fine
+    one_cell ///< a cell whose refinements degenerate at the round boundary
   };
 
   enum class ObstacleKind
@@ -110,10 +123,13 @@ namespace Friction
     struct Scene
     {
       GeometryKind              geometry = GeometryKind::rectangle;
-      std::vector<double>       size;         ///< of the rectangle, lengths
-      std::vector<unsigned int> subdivisions; ///< of the rectangle
-      double                    radius = 1.;  ///< of the half disc
-      std::string               mesh_file;    ///< path, ready to be opened
+      std::vector<double>       size;         ///< of the rectangle; empty: ones
+      std::vector<unsigned int> subdivisions; ///< of the rectangle, likewise
+      double                    radius      = 1.; ///< of a round body
+      double                    length      = 2.; ///< of a cylinder
+      CoarseGrid                coarse_grid = CoarseGrid::o_grid;
+      unsigned int              layers      = 0; ///< along z; 0: as is suitable
+      std::string               mesh_file;       ///< path, ready to be opened
       double                    distortion     = 0.; ///< fraction of a cell
       double                    rotation_angle = 0.; ///< degrees, around z
       std::string exact_displacement; ///< components, comma separated, or empty
@@ -121,12 +137,13 @@ namespace Friction
 
     struct Obstacle
     {
-      ObstacleKind                     kind = ObstacleKind::none;
-      std::vector<double>              point;       ///< on the plane
-      std::vector<double>              normal;      ///< into the obstacle
+      ObstacleKind        kind = ObstacleKind::none;
+      std::vector<double> point;  ///< on the plane; empty: 0
+      std::vector<double> normal; ///< into the obstacle; empty: down
       std::vector<std::vector<double>> centers;     ///< of the rods
       std::vector<std::vector<double>> axes;        ///< of the rods, 3D only
       double                           radius = 1.; ///< of the rods
+      double length = std::numeric_limits<double>::infinity(); ///< likewise
     };
 
     struct Contact

@@ -67,8 +67,10 @@ namespace Friction
    *
    * Boundary ids of the meshes made here: half disc 0 the arc, 1 the flat top;
    * rectangle 0 left, 1 right, 2 bottom, 3 top (in three dimensions 0 and 1 in
-   * x direction, 2 and 3 in y, 4 bottom and 5 top). Those of a mesh file are
-   * its physical ids.
+   * x direction, 2 and 3 in y, 4 bottom and 5 top); cylinder 0 the mantle, 1
+   * and 2 its ends; half cylinder 0 the mantle, 1 the flat top, 2 and 3 its
+   * ends; half ball 0 the sphere, 1 the flat top. Those of a mesh file are its
+   * physical ids.
    *
    * A rotation angle turns the whole scene around the origin (in three
    * dimensions around the z axis), so that every function here is that of the

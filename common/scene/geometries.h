@@ -1,0 +1,39 @@
+#ifndef friction_scene_geometries_h
+#define friction_scene_geometries_h
+
+#include <common/scene/parameters.h>
+
+#include <deal.II/grid/tria.h>
+
+#include <string>
+
+namespace Friction
+{
+  using namespace dealii;
+
+  /**
+   * Make the coarse mesh of a body in an empty triangulation that lives on one
+   * processor, and set boundary and manifold ids. The manifolds themselves are
+   * attached later, by set_manifolds(), since they are lost when a mesh is
+   * turned or copied.
+   *
+   * Throws InputError if there is no such body in dim dimensions, or if the
+   * mesh file cannot be read; @p where begins the sentence.
+   */
+  template <int dim>
+  void make_geometry(const Parameters::Scene &scene,
+                     const std::string       &where,
+                     Triangulation<dim>      &triangulation);
+
+  /**
+   * Attach the manifolds that belong to the ids set by make_geometry(), so that
+   * refined meshes follow curved boundaries exactly: new vertices lie on them,
+   * and the manifold knows the normal there. Bodies may have been turned around
+   * the origin, in three dimensions around the z axis.
+   */
+  template <int dim>
+  void set_manifolds(const Parameters::Scene &scene,
+                     Triangulation<dim>      &triangulation);
+} // namespace Friction
+
+#endif
