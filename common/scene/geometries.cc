@@ -13,6 +13,7 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -129,41 +130,37 @@ namespace Friction
 
 
 
-    // The disc as an O-grid: a core of 2 x 2 cells in one ring of 8. The core
-    // is a square that is blown up a little, so that its corners, where three
-    // cells meet, share the full angle evenly: 118 degrees in the core and 121
-    // on either side. However fine the mesh, angles stay between 60 and 121
-    // degrees.
+    // The disc as an O-grid: a core of two trapezoids in one ring of 6, 8 cells
+    // and 12 vertices altogether, symmetric about both axes. The vertices of
+    // the core are those of a hexagon, whose angles of 120 degrees suit the
+    // places where three cells meet; it is drawn in a little where four cells
+    // meet, no more than the three allow. However fine the mesh, angles stay
+    // between 57 and 123 degrees. With 6 vertices on the circle, two of them
+    // lie 30 degrees to the left and right of the lowest point, which is where
+    // rods touch.
     Mesh<2>
     disc(const double radius)
     {
-      const double middle = .5 * radius, corner = .395 * radius;
-      const double on_arc = std::sqrt(.5) * radius;
-
-      // Around the core and around the disc, anticlockwise from the lowest
-      // point; then the centre.
+      // Around the core and around the disc, anticlockwise from the lower left.
       Mesh<2> mesh;
-      for (const auto &[axis, diagonal] :
-           {std::make_pair(middle, corner), std::make_pair(radius, on_arc)})
+      for (const auto &[on_axis, others] :
+           {std::make_pair(.47, .5), std::make_pair(1., 1.)})
         {
-          const double a = axis, d = diagonal;
-          for (const Point<2> &p : {Point<2>(0, -a),
-                                    Point<2>(d, -d),
+          const double a = radius * on_axis, b = radius * others;
+          const double x = b * .5, y = b * std::sqrt(.75);
+          for (const Point<2> &p : {Point<2>(-x, -y),
+                                    Point<2>(x, -y),
                                     Point<2>(a, 0),
-                                    Point<2>(d, d),
-                                    Point<2>(0, a),
-                                    Point<2>(-d, d),
-                                    Point<2>(-a, 0),
-                                    Point<2>(-d, -d)})
+                                    Point<2>(x, y),
+                                    Point<2>(-x, y),
+                                    Point<2>(-a, 0)})
             mesh.vertices.push_back(p);
         }
-      mesh.vertices.emplace_back(0, 0);
 
-      for (unsigned int k = 0; k < 8; k += 2)
-        mesh.add_cell({16, (k + 6) % 8, k, (k + 7) % 8},
-                      numbers::flat_manifold_id);
-      for (unsigned int k = 0; k < 8; ++k)
-        mesh.add_cell({8 + k, 8 + (k + 1) % 8, k, (k + 1) % 8},
+      mesh.add_cell({0, 1, 5, 2}, numbers::flat_manifold_id);
+      mesh.add_cell({5, 2, 4, 3}, numbers::flat_manifold_id);
+      for (unsigned int k = 0; k < 6; ++k)
+        mesh.add_cell({6 + k, 6 + (k + 1) % 6, k, (k + 1) % 6},
                       ring_manifold_id);
       GridTools::consistently_order_cells(mesh.cells);
       return mesh;
@@ -302,12 +299,14 @@ namespace Friction
     // Make the triangulation of a body with a round boundary. Of a face on the
     // boundary, flat_id says to which flat part it belongs, in terms of its
     // centre; the answer 0 means that it belongs to none, but to the round
-    // part.
+    // part. Edges in the flat part straight_id are straight as well; in the
+    // others they follow the round boundary like those inside.
     template <int dim, typename FlatId>
     void
-    create(const Mesh<dim>    &mesh,
-           const FlatId       &flat_id,
-           Triangulation<dim> &triangulation)
+    create(const Mesh<dim>         &mesh,
+           const FlatId            &flat_id,
+           const types::boundary_id straight_id,
+           Triangulation<dim>      &triangulation)
     {
       triangulation.create_triangulation(
         mesh.vertices, mesh.cells, SubCellData());
@@ -319,14 +318,22 @@ namespace Friction
         for (const auto &cell : triangulation.active_cell_iterators())
           if (cell->manifold_id() == id)
             cell->set_all_manifold_ids(id);
-      for (const auto &cell : triangulation.active_cell_iterators())
-        for (const auto &face : cell->face_iterators())
-          if (face->at_boundary())
-            face->set_all_boundary_ids(flat_id(face->center()));
-      for (const auto &cell : triangulation.active_cell_iterators())
-        for (const auto &face : cell->face_iterators())
-          if (face->at_boundary() && face->boundary_id() == 0)
-            face->set_all_manifold_ids(round_manifold_id);
+
+      // Flat parts first, so that the rims are round.
+      for (const bool round : {false, true})
+        for (const auto &cell : triangulation.active_cell_iterators())
+          for (const auto &face : cell->face_iterators())
+            if (face->at_boundary())
+              {
+                const types::boundary_id id = flat_id(face->center());
+                if ((id == 0) != round)
+                  continue;
+                face->set_all_boundary_ids(id);
+                if (round)
+                  face->set_all_manifold_ids(round_manifold_id);
+                else if (id == straight_id)
+                  face->set_all_manifold_ids(numbers::flat_manifold_id);
+              }
     }
 
 
@@ -367,6 +374,34 @@ namespace Friction
 
 
 
+    // The mantle of a cylinder around the z axis. The class it is derived from
+    // finds normals by way of two tangents, to rounding; that leaves them with
+    // a small component along the axis, and where the displacement along the
+    // axis is prescribed, contact could not be told from it exactly.
+    class Mantle : public CylindricalManifold<3>
+    {
+    public:
+      Mantle()
+        : CylindricalManifold<3>(/*axis = z*/ 2)
+      {}
+
+      std::unique_ptr<Manifold<3>>
+      clone() const override
+      {
+        return std::make_unique<Mantle>();
+      }
+
+      Tensor<1, 3>
+      normal_vector(const Triangulation<3>::face_iterator &,
+                    const Point<3> &p) const override
+      {
+        const Tensor<1, 3> radial({p[0], p[1], 0.});
+        return radial / radial.norm();
+      }
+    };
+
+
+
     void
     set_round_manifold(const Parameters::Scene &,
                        Triangulation<2> &triangulation)
@@ -383,8 +418,7 @@ namespace Friction
       if (scene.geometry == GeometryKind::half_ball)
         triangulation.set_manifold(round_manifold_id, SphericalManifold<3>());
       else
-        triangulation.set_manifold(round_manifold_id,
-                                   CylindricalManifold<3>(/*axis = z*/ 2));
+        triangulation.set_manifold(round_manifold_id, Mantle());
     }
 
 
@@ -421,6 +455,7 @@ namespace Friction
       create(
         half_disc(scene.radius),
         [=](const Point<2> &p) { return p[1] > -tolerance ? 1 : 0; },
+        1,
         triangulation);
     }
 
@@ -451,20 +486,23 @@ namespace Friction
         create(
           scene.coarse_grid == CoarseGrid::one_cell
             ? extrude(inscribed_square(R), length, 1)
-            : extrude(disc(R), length, n_layers(R / 2.)),
+            : extrude(disc(R), length, n_layers(.6 * R)),
           [=](const Point<3> &p) { return end_id(p, 1); },
+          numbers::invalid_boundary_id,
           triangulation);
       else if (scene.geometry == GeometryKind::half_cylinder)
         create(
-          extrude(half_disc(R), length, n_layers(R / 5.)),
+          extrude(half_disc(R), length, n_layers(.2 * R)),
           [=](const Point<3> &p) {
             return p[1] > -tolerance ? 1u : end_id(p, 2);
           },
+          1,
           triangulation);
       else
         create(
           half_ball(R),
           [=](const Point<3> &p) { return p[2] > -tolerance ? 1 : 0; },
+          numbers::invalid_boundary_id,
           triangulation);
     }
 

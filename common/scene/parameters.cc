@@ -607,12 +607,12 @@ namespace Friction
     {
       auto &conditions        = parameters.boundary_conditions;
       conditions.displacement = read_conditions(
-        "Boundary conditions/Displacement", "id: u_x, u_y (, u_z)", values);
+        "Boundary conditions/Displacement", "id: u_x, u_y[, u_z]", values);
       conditions.traction = read_conditions(
-        "Boundary conditions/Traction", "id: t_x, t_y (, t_z)", values);
+        "Boundary conditions/Traction", "id: t_x, t_y[, t_z]", values);
       conditions.pinned_points =
         read_conditions("Boundary conditions/Pinned points",
-                        "(x, y): u_x, u_y, or (x, y, z): u_x, u_y, u_z",
+                        "(x, y[, z]): u_x, u_y[, u_z]",
                         values);
       conditions.body_force = values.get("Boundary conditions/Body force");
     }

@@ -163,7 +163,9 @@ namespace Friction
       const auto &text = parameters.obstacle;
       if (text.kind == ObstacleKind::plane)
         {
-          Point<dim> point, normal = -Point<dim>::unit_vector(dim - 1);
+          Point<dim>     point;
+          Tensor<1, dim> normal;
+          normal[dim - 1] = -1.;
           if (!text.point.empty())
             point = make_point<dim>(text.point, here + "'Obstacle/Point'");
           if (!text.normal.empty())

@@ -60,6 +60,41 @@ main()
               << rods.gap(Point<3>(0, 0, 1), s) << ' '
               << rods.gap(Point<3>(0, -1.6, 1), n) << ' '
               << rods.normal(Point<3>(2, 0, 1)) << std::endl;
+
+    // From 6 to 8.
+    const auto short_rods =
+      Obstacle<3>::make_rods({Point<3>(0, -2, 7)}, {z}, .5, 2.);
+    std::cout << short_rods.gap(Point<3>(0, 0, 8), n) << ' '
+              << short_rods.gap(Point<3>(0, 0, 8.1), n) << ' '
+              << short_rods.gap(Point<3>(0, 0, 5), n) << ' '
+              << short_rods.gap(Point<3>(0, 0, 5), s) << std::endl;
+  }
+  {
+    // Rods below the unit cylinder, parallel to it, and across. Along the
+    // normal of the cylinder the gap has a closed form; from across it is that
+    // of the rod's own circle.
+    std::cout << "rods below a cylinder" << std::endl;
+    const double       r = .5, R = 1.;
+    const Point<3>     c(.75, -1.5 * std::sqrt(.75), 1.);
+    const Tensor<1, 3> along({0., 0., 1.}), across({1., 0., 0.});
+    const auto         parallel =
+      Obstacle<3>::make_rods({c, Point<3>(-c[0], c[1], 1.)}, {along, along}, r);
+    const auto crossing =
+      Obstacle<3>::make_rods({Point<3>(0., -1.5, .5)}, {across}, r);
+    for (const double degrees : {-30., -20., -35.})
+      {
+        const double       angle = degrees * numbers::PI / 180.;
+        const Tensor<1, 3> n({std::sin(-angle), -std::cos(angle), 0.});
+        const Tensor<1, 3> center({c[0], c[1], 0.});
+        const double       cn = center * n;
+        const double       z  = .3;
+        std::cout << parallel.gap(Point<3>(R * n + z * along), n) << ' '
+                  << (cn - R) -
+            std::sqrt(r * r - center.norm_square() + cn * cn)
+                  << ", " << crossing.gap(Point<3>(R * n + z * along), n) << ' '
+                  << (1.5 - std::sqrt(r * r - .2 * .2)) / std::cos(angle) - R
+                  << std::endl;
+      }
   }
   {
     std::cout << "rotated" << std::endl;

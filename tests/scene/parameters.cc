@@ -53,6 +53,7 @@ main()
                                           "Material/Poisson ratio = 0.25",
                                           "Solver/Algorithm=fixed point",
                                           "Solver/Truncation=contact",
+                                          "Solver/Local solver=Uzawa",
                                           "Output/Fields=false"});
     std::cout << p.name << "\nsize " << p.scene.size[0] << ' '
               << p.scene.size[1] << "\nF " << p.contact.friction_coefficient
@@ -61,6 +62,7 @@ main()
               << "\nfixed point "
               << (p.solver.algorithm == Algorithm::fixed_point) << "\ncontact "
               << (p.solver.truncation == TruncationVariant::contact)
+              << "\nUzawa " << (p.solver.local_solver == LocalSolver::uzawa)
               << "\nfields " << p.output.fields << "\nexpanded "
               << p.expressions.expand("2*s*max(r,x)") << "\nmu + F "
               << p.expressions.evaluate("mu + F", "here") << std::endl;
@@ -82,6 +84,7 @@ main()
                   solver.coarse_correction == settings.coarse_correction &&
                   solver.cycle == settings.cycle &&
                   solver.truncation == settings.truncation &&
+                  solver.local_solver == settings.local_solver &&
                   solver.smoothing_steps == settings.smoothing_steps &&
                   solver.coarse_smoothing_steps ==
                     settings.coarse_smoothing_steps &&
@@ -93,6 +96,7 @@ main()
                   solver.maximum_outer_iterations ==
                     settings.maximum_outer_iterations &&
                   solver.maximum_damping == settings.maximum_damping &&
+                  solver.recombined_steps == settings.recombined_steps &&
                   solver.outer_damping == settings.outer_damping)
               << std::endl;
   }
@@ -134,6 +138,11 @@ main()
   check("size", good, {"Scene/Size=1, 1/0"});
   check("size", good, {"Scene/Size=1, q"});
   check("radius", good, {"Scene/Radius=0"});
+  check("length", good, {"Scene/Length=0"});
+  check("coarse grid", good, {"Scene/Coarse grid=two cells"});
+  check("layers", good, {"Scene/Layers=-1"});
+  check("length of rods", good, {"Obstacle/Length=0"});
+  check("length of rods", good, {"Obstacle/Length=q"});
   check("subdivisions", good, {"Scene/Subdivisions=1, 1.5"});
   check("distortion", good, {"Scene/Distortion=0.9"});
   check("no mesh file", good, {"Scene/Geometry=mesh file"});

@@ -13,24 +13,35 @@ using namespace Friction;
 
 namespace
 {
-  // Stress at a point, by central differences of the displacement.
-  Tensor<2, 2>
-  stress(const Scene<2> &scene, const Point<2> &p)
+  template <int dim>
+  std::string
+  scene_file(const std::string &name)
   {
-    const double h = 1e-4;
-    const auto  &u = *scene.exact_displacement();
-    Tensor<2, 2> gradient;
-    for (unsigned int c = 0; c < 2; ++c)
-      for (unsigned int d = 0; d < 2; ++d)
+    return SOURCE_DIR "/../../step-friction-" + std::to_string(dim) +
+      "d/scenes/" + name + ".prm";
+  }
+
+
+
+  // Stress at a point, by central differences of the displacement.
+  template <int dim>
+  Tensor<2, dim>
+  stress(const Scene<dim> &scene, const Point<dim> &p)
+  {
+    const double   h = 1e-4;
+    const auto    &u = *scene.exact_displacement();
+    Tensor<2, dim> gradient;
+    for (unsigned int c = 0; c < dim; ++c)
+      for (unsigned int d = 0; d < dim; ++d)
         {
-          Point<2> above = p, below = p;
+          Point<dim> above = p, below = p;
           above[d] += h;
           below[d] -= h;
           gradient[c][d] = (u.value(above, c) - u.value(below, c)) / (2. * h);
         }
-    Tensor<2, 2> sigma =
+    Tensor<2, dim> sigma =
       scene.material().mu() * (gradient + transpose(gradient));
-    for (unsigned int d = 0; d < 2; ++d)
+    for (unsigned int d = 0; d < dim; ++d)
       sigma[d][d] += scene.material().lambda() * trace(gradient);
     return sigma;
   }
@@ -38,104 +49,148 @@ namespace
 
 
   // Largest violations at a number of points, relative to the largest stress.
+  // The body is a rectangle of the given size, in contact where its last
+  // coordinate is zero.
+  template <int dim>
   void
   check(const std::string              &name,
         const std::vector<std::string> &overrides,
-        const Tensor<1, 2>             &size)
+        const Tensor<1, dim>           &size)
   {
-    const Parameters parameters = read_parameters(
-      SOURCE_DIR "/../../step-friction-2d/scenes/" + name + ".prm", overrides);
-    const Scene<2> scene(parameters);
+    const Parameters parameters =
+      read_parameters(scene_file<dim>(name), overrides);
+    const Scene<dim> scene(parameters);
     const double   angle = parameters.scene.rotation_angle * numbers::PI / 180.;
-    const Tensor<2, 2> Q({{std::cos(angle), -std::sin(angle)},
-                          {std::sin(angle), std::cos(angle)}});
-    const auto         at = [&](const double x, const double y) {
-      return Point<2>(Q * Point<2>(x * size[0], y * size[1]));
+    Tensor<2, dim> Q(unit_symmetric_tensor<dim>());
+    Q[0][0] = Q[1][1] = std::cos(angle);
+    Q[1][0]           = std::sin(angle);
+    Q[0][1]           = -Q[1][0];
+    const auto at     = [&](Point<dim> p) {
+      for (unsigned int d = 0; d < dim; ++d)
+        p[d] *= size[d];
+      return Point<dim>(Q * p);
     };
-    const auto &u = *scene.exact_displacement();
+    const auto &u            = *scene.exact_displacement();
+    const auto  displacement = [&](const Point<dim> &p) {
+      Tensor<1, dim> value;
+      for (unsigned int c = 0; c < dim; ++c)
+        value[c] = u.value(p, c);
+      return value;
+    };
 
     const unsigned int n       = 29;
     const double       h       = 1e-3;
-    double             balance = 0., traction = 0., displacement = 0., law = 0.;
+    double             balance = 0., traction = 0., difference = 0., law = 0.;
     double             scale  = 0.;
     unsigned int       n_open = 0, n_slip = 0, n_stick = 0;
     for (unsigned int i = 0; i < n; ++i)
       {
-        const double s = (i + .5) / n;
+        // In the unit square or cube, a point of which all but the last
+        // coordinate wander through it, and its projection to a side.
+        Point<dim> place;
+        place[0] = (i + .5) / n;
+        if (dim == 3)
+          place[1] = std::fmod((i + .5) / 1.618034, 1.);
+        const auto on_side = [&](const unsigned int id) {
+          Point<dim>   p;
+          unsigned int next = 0;
+          for (unsigned int d = 0; d < dim; ++d)
+            p[d] = (d == id / 2 ? id % 2 : place[next++]);
+          return at(p);
+        };
+        const auto outward_normal = [&](const unsigned int id) {
+          Tensor<1, dim> normal;
+          normal[id / 2] = (id % 2 == 1 ? 1. : -1.);
+          return Q * normal;
+        };
 
-        for (const double y : {.2, .7})
+        for (const double height : {.2, .7})
           {
-            const Point<2> p = at(s, y);
-            Tensor<1, 2>   residual;
+            place[dim - 1]     = height;
+            const Point<dim> p = at(place);
+            Tensor<1, dim>   residual;
             if (scene.body_force())
-              for (unsigned int c = 0; c < 2; ++c)
+              for (unsigned int c = 0; c < dim; ++c)
                 residual[c] = scene.body_force()->value(p, c);
-            for (unsigned int d = 0; d < 2; ++d)
+            for (unsigned int d = 0; d < dim; ++d)
               {
-                Point<2> above = p, below = p;
+                Point<dim> above = p, below = p;
                 above[d] += h;
                 below[d] -= h;
-                const Tensor<2, 2> difference =
+                const Tensor<2, dim> change =
                   stress(scene, above) - stress(scene, below);
-                for (unsigned int c = 0; c < 2; ++c)
-                  residual[c] += difference[c][d] / (2. * h);
+                for (unsigned int c = 0; c < dim; ++c)
+                  residual[c] += change[c][d] / (2. * h);
               }
             balance = std::max(balance, residual.norm());
             scale   = std::max(scale, stress(scene, p).norm());
           }
 
-        // Points and outward normals of the sides, by boundary id.
-        const Point<2>     points[4] = {at(0, s), at(1, s), at(s, 0), at(s, 1)};
-        const Tensor<1, 2> ex({1., 0.}), ey({0., 1.});
-        const Tensor<1, 2> normals[4] = {-Q * ex, Q * ex, -Q * ey, Q * ey};
         for (const auto &condition : scene.traction_conditions())
           {
-            const Point<2>     p = points[condition.boundary_id];
-            const Tensor<1, 2> t =
-              stress(scene, p) * normals[condition.boundary_id];
-            for (unsigned int c = 0; c < 2; ++c)
+            const Point<dim>     p = on_side(condition.boundary_id);
+            const Tensor<1, dim> t =
+              stress(scene, p) * outward_normal(condition.boundary_id);
+            for (unsigned int c = 0; c < dim; ++c)
               traction = std::max(
                 traction, std::abs(t[c] - condition.traction->value(p, c)));
           }
         for (const auto &condition : scene.dirichlet_conditions())
           {
-            const Point<2> p = points[condition.boundary_id];
-            for (unsigned int c = 0; c < 2; ++c)
-              displacement = std::max(
-                displacement,
+            const Point<dim> p = on_side(condition.boundary_id);
+            for (unsigned int c = 0; c < dim; ++c)
+              difference = std::max(
+                difference,
                 std::abs(u.value(p, c) - condition.displacement->value(p, c)));
           }
 
         // At the bottom.
-        const Tensor<1, 2> normal = normals[2], tangent = Q * ex;
-        const Point<2>     p   = points[2];
-        const Tensor<1, 2> t   = stress(scene, p) * normal;
-        const double       gap = scene.obstacle().gap(p, normal);
-        const Tensor<1, 2> value({u.value(p, 0), u.value(p, 1)});
-        const double       pressure = -(t * normal);
-        const double       shear    = t * tangent;
-        const double       slip     = value * tangent;
-        const double       bound    = scene.friction_coefficient() * pressure;
-        const double       distance = gap - value * normal;
-        const bool         open     = distance > 1e-9;
-        const bool         slipping = std::abs(slip) > 1e-9;
+        const Tensor<1, dim> normal   = outward_normal(2 * dim - 2);
+        const Point<dim>     p        = on_side(2 * dim - 2);
+        const Tensor<1, dim> t        = stress(scene, p) * normal;
+        const double         gap      = scene.obstacle().gap(p, normal);
+        const Tensor<1, dim> value    = displacement(p);
+        const double         pressure = -(t * normal);
+        const Tensor<1, dim> shear    = t - (t * normal) * normal;
+        const Tensor<1, dim> slip     = value - (value * normal) * normal;
+        const double         bound    = scene.friction_coefficient() * pressure;
+        const double         distance = gap - value * normal;
+        const bool           open     = distance > 1e-9;
+        const bool           slipping = slip.norm() > 1e-9;
         ++(open ? n_open : slipping ? n_slip : n_stick);
         law = std::max(
           {law,
            -distance,
            -pressure,
            open ? std::abs(pressure) : 0.,
-           std::abs(shear) - bound,
-           slipping ? std::abs(shear + bound * std::copysign(1., slip)) : 0.});
+           shear.norm() - bound,
+           slipping ? (shear + bound / slip.norm() * slip).norm() : 0.});
       }
     const auto small = [&](const double value, const double tolerance) {
       return value < tolerance * scale ? "holds" : "FAILS";
     };
     std::cout << name << ": balance " << small(balance, 1e-3) << ", tractions "
               << small(traction, 1e-5) << ", displacements "
-              << small(displacement, 1e-12) << ", law " << small(law, 1e-5)
+              << small(difference, 1e-12) << ", law " << small(law, 1e-5)
               << "; open " << n_open << ", slip " << n_slip << ", stick "
               << n_stick << std::endl;
+  }
+
+
+
+  // The others are at least read.
+  template <int dim>
+  void
+  print(const std::string &name)
+  {
+    const Scene<dim>   scene(read_parameters(scene_file<dim>(name)));
+    Triangulation<dim> mesh;
+    scene.make_coarse_mesh(mesh);
+    std::cout << name << ": F " << scene.friction_coefficient() << ", "
+              << mesh.n_active_cells() << " cells, "
+              << scene.dirichlet_conditions().size() << " Dirichlet, "
+              << scene.traction_conditions().size() << " traction, "
+              << scene.pinned_points().size() << " pinned" << std::endl;
   }
 } // namespace
 
@@ -156,17 +211,19 @@ main()
   check("stick-slip", {"Scene/Rotation angle=30"}, block);
   check("stick-slip", {"Material/Young's modulus=1e5"}, block);
 
-  // The others are at least read.
+  const Tensor<1, 3> box({1.5, 1., 1.});
+  const std::string  others_3d = "Scene/Constants=L=1.5;W=1;H=1;d=0.02;";
+  check("stick-slip", {}, box);
+  check("stick-slip", {others_3d + "gap=0; alpha=2.5; U=0.01"}, box);
+  check("stick-slip", {others_3d + "gap=0.01; alpha=-1; U=0.0277"}, box);
+  check("stick-slip", {others_3d + "gap=0.01; alpha=-1; U=0.0283"}, box);
+  check("stick-slip",
+        {"Scene/Rotation angle=30", "Material/Young's modulus=1e5"},
+        box);
+
   for (const std::string name : {"hertz", "block", "raous"})
-    {
-      const Scene<2>   scene(read_parameters(
-        SOURCE_DIR "/../../step-friction-2d/scenes/" + name + ".prm"));
-      Triangulation<2> mesh;
-      scene.make_coarse_mesh(mesh);
-      std::cout << name << ": F " << scene.friction_coefficient() << ", "
-                << mesh.n_active_cells() << " cells, "
-                << scene.dirichlet_conditions().size() << " Dirichlet, "
-                << scene.traction_conditions().size() << " traction, "
-                << scene.pinned_points().size() << " pinned" << std::endl;
-    }
+    print<2>(name);
+  for (const std::string name :
+       {"block", "cylinder", "crossing-rods", "extruded-hertz", "half-ball"})
+    print<3>(name);
 }

@@ -100,6 +100,13 @@ echo 'This is no mesh.' >text.msh
 bad 'mesh file that is none' 'text.msh' "$block" 'Scene/Geometry=mesh file' \
   "Scene/Mesh file=$work/text.msh"
 
+bad 'scene of three dimensions' 'give the scene to step-friction-3d' \
+  "$scenes/../../step-friction-3d/scenes/block.prm"
+bad 'body that there is in three dimensions' \
+  'give the scene to step-friction-3d' "$block" Scene/Geometry=cylinder
+bad 'too few components' 'needs 2 components, but has 1; correct it.' \
+  "$block" 'Boundary conditions/Displacement=3: 0.02'
+
 bad 'contact boundary that does not exist' \
   'boundary id 7, but the mesh has only 0, 1, 2, 3' \
   "$block" 'Contact/Boundary id=7'
