@@ -133,11 +133,11 @@ namespace Friction
     // The disc as an O-grid: a core of two trapezoids in one ring of 6, 8 cells
     // and 12 vertices altogether, symmetric about both axes. The vertices of
     // the core are those of a hexagon, whose angles of 120 degrees suit the
-    // places where three cells meet; it is drawn in a little where four cells
-    // meet, no more than the three allow. However fine the mesh, angles stay
-    // between 57 and 123 degrees. With 6 vertices on the circle, two of them
-    // lie 30 degrees to the left and right of the lowest point, which is where
-    // rods touch.
+    // places where three cells meet; it is drawn in a little where four meet,
+    // which widens the acute angles there. However fine the mesh, angles stay
+    // between 57 and 123 degrees. Of the 6 vertices on the circle, two lie 30
+    // degrees to the left and right of the lowest point, which is where the
+    // rods of scene 'cylinder' touch.
     Mesh<2>
     disc(const double radius)
     {
