@@ -311,14 +311,15 @@ namespace StepFriction2d
     // boundary to assemble, and no multiplier among the unknowns. The solver
     // itself does not even need $m_p$. It is what turns forces into stresses,
     // for whoever wants those.
-    contact_boundary =
-      std::make_unique<ContactBoundary<dim>>(mapping,
-                                             dof_handler,
-                                             hanging_node_constraints,
-                                             *nodal_constraints,
-                                             scene.contact_boundary_id(),
-                                             scene.obstacle(),
-                                             scene.contact_normal());
+    contact_boundary = std::make_unique<ContactBoundary<dim>>(
+      mapping,
+      dof_handler,
+      hanging_node_constraints,
+      *nodal_constraints,
+      scene.contact_boundary_id(),
+      scene.obstacle(),
+      scene.contact_normal(),
+      scene.ignores_prescribed_penetration());
   }
 
 

@@ -84,7 +84,8 @@ namespace Friction
     const NodalConstraints<dim>     &constraints,
     const types::boundary_id         boundary_id,
     const Obstacle<dim>             &obstacle,
-    const ContactNormal              contact_normal)
+    const ContactNormal              contact_normal,
+    const bool                       ignore_prescribed_penetration)
   {
     // First collect, per vertex on Gamma_S, its point, the sum of the normals
     // of the adjacent faces, and its share of the boundary measure.
@@ -179,8 +180,9 @@ namespace Friction
 
         if (constraints.is_fixed(node))
           {
-            if (prescribed_value * normal - gap >
-                1e-8 * (std::abs(gap) + prescribed_value.norm()))
+            if (!ignore_prescribed_penetration &&
+                prescribed_value * normal - gap >
+                  1e-8 * (std::abs(gap) + prescribed_value.norm()))
               throw InputError(
                 "The prescribed displacement of the node at " +
                 describe(share.point) +
@@ -188,7 +190,8 @@ namespace Friction
                 "obstacle by " +
                 std::to_string(prescribed_value * normal - gap) +
                 ": prescribe a smaller displacement there or end the contact "
-                "boundary before that node.");
+                "boundary before that node, or set 'Contact/Ignore prescribed "
+                "penetration'.");
             continue;
           }
         for (const auto &e : prescribed_tangents)

@@ -62,6 +62,8 @@ namespace Friction
   {
   public:
     /**
+     * @param ignore_prescribed_penetration  leave out nodes that are prescribed
+     *         to penetrate the obstacle, instead of throwing.
      * @throws InputError if a node is prescribed to penetrate the obstacle, or
      *         if a prescribed component at a contact node has a part in normal
      *         direction, so that contact and prescribed value would compete.
@@ -72,7 +74,8 @@ namespace Friction
                     const NodalConstraints<dim>     &constraints,
                     const types::boundary_id         boundary_id,
                     const Obstacle<dim>             &obstacle,
-                    const ContactNormal              contact_normal);
+                    const ContactNormal              contact_normal,
+                    const bool ignore_prescribed_penetration = false);
 
     unsigned int
     size() const

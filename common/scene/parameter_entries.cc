@@ -216,6 +216,15 @@ namespace Friction
        "Direction in which the gap is measured: the outward normal of the "
        "body, or straight towards the obstacle."},
 
+      {"Contact",
+       "Ignore prescribed penetration",
+       "false",
+       flag,
+       "Whether a node of the contact boundary may be prescribed to lie inside "
+       "the obstacle, and is then no contact node. Otherwise this is an error: "
+       "where such a node meets others that must not penetrate, the stress has "
+       "a singularity without finite energy."},
+
       {"Refinement",
        "Strategy",
        "uniform",

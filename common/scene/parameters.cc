@@ -627,6 +627,8 @@ namespace Friction
                                                           : FrictionLaw::coulomb);
       contact.friction_coefficient = F;
       contact.friction_bound       = values.get("Contact/Friction bound");
+      contact.ignore_prescribed_penetration =
+        values.flag("Contact/Ignore prescribed penetration");
       contact.normal = (values.get("Contact/Contact normal") == "body"
                           ? ContactNormal::body
                           : ContactNormal::obstacle);

@@ -152,7 +152,8 @@ namespace Friction
       FrictionLaw   friction_law         = FrictionLaw::coulomb;
       double        friction_coefficient = 0.;
       std::string   friction_bound; ///< Tresca: given stress, an expression
-      ContactNormal normal = ContactNormal::body;
+      ContactNormal normal                        = ContactNormal::body;
+      bool          ignore_prescribed_penetration = false;
     };
 
     struct BoundaryConditions

@@ -147,6 +147,14 @@ namespace Friction
       return parameters.contact.normal;
     }
 
+    /// Whether nodes of the contact boundary may be prescribed to lie inside
+    /// the obstacle.
+    bool
+    ignores_prescribed_penetration() const
+    {
+      return parameters.contact.ignore_prescribed_penetration;
+    }
+
     /**
      * The law of friction. Coulomb's law with a coefficient of zero is
      * reported as no friction, so that nobody computes anything for it.

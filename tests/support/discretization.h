@@ -100,14 +100,15 @@ namespace Tests
       constraints = std::make_unique<NodalConstraints<dim>>(
         dof_handler, hanging, dirichlet);
       assemble(scene);
-      contact =
-        std::make_unique<ContactBoundary<dim>>(mapping,
-                                               dof_handler,
-                                               hanging,
-                                               *constraints,
-                                               scene.contact_boundary_id(),
-                                               scene.obstacle(),
-                                               scene.contact_normal());
+      contact = std::make_unique<ContactBoundary<dim>>(
+        mapping,
+        dof_handler,
+        hanging,
+        *constraints,
+        scene.contact_boundary_id(),
+        scene.obstacle(),
+        scene.contact_normal(),
+        scene.ignores_prescribed_penetration());
       hierarchy =
         std::make_unique<LevelHierarchy<dim>>(dof_handler, *constraints);
       friction_law         = scene.friction_law();
