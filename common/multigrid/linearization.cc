@@ -52,10 +52,13 @@ namespace Friction
       return curvature;
     }
 
-    // Whether the block is the other one within a tenth of its size.
+    // Whether two blocks agree within a tenth of their size, or of the
+    // stiffness that they are added to.
     template <int dim>
     bool
-    is_close(const NodeBlock<dim> &block, const NodeBlock<dim> &other)
+    is_close(const NodeBlock<dim> &block,
+             const NodeBlock<dim> &other,
+             const double          stiffness)
     {
       double difference = 0, size = 0;
       for (unsigned int i = 0; i < dim * dim; ++i)
@@ -63,7 +66,7 @@ namespace Friction
           difference += (block[i] - other[i]) * (block[i] - other[i]);
           size += other[i] * other[i];
         }
-      return difference <= .01 * size;
+      return std::sqrt(difference) <= .1 * (std::sqrt(size) + stiffness);
     }
   } // namespace
 
@@ -118,15 +121,14 @@ namespace Friction
           {
             const double bound = friction_coefficient * state.normal_force(p);
             const auto   u_T   = tangential_components<dim>(node, u);
+            const double stiffness =
+              trace<dim>(matrix.block(matrix.row_begin(node.node))) / dim;
             if (bound > 0 && !state.sticks(p) && !all_is_held &&
                 norm_of(u_T) > 0)
-              curvature = friction_curvature(
-                node,
-                u_T,
-                bound,
-                1e8 * trace<dim>(matrix.block(matrix.row_begin(node.node))));
+              curvature = friction_curvature(node, u_T, bound, 1e8 * stiffness);
             if (projector == current.projector(node.node) &&
-                is_close<dim>(current.curvature(node.node), curvature))
+                is_close<dim>(
+                  current.curvature(node.node), curvature, stiffness))
               continue;
           }
         current.set(node.node, projector, curvature);

@@ -36,7 +36,8 @@ namespace Friction
    *
    * Level matrices have to be computed anew wherever $\omega''_p$ changes, and
    * in principle it changes always and everywhere. So it is kept for as long as
-   * it is right within 10 %: the line search works with the true energy anyway.
+   * it is right within 10 % of itself and of the stiffness that it is added to:
+   * the line search works with the true energy anyway.
    */
   template <int dim>
   class Linearization

@@ -243,6 +243,11 @@ namespace Friction
     recombination.add_iterate(u, residual);
     recombination.improve(v, Av, r, linearization.truncation());
 
+    // Where a node would have to reverse its slip, the linearisation knows
+    // nothing of what comes. A single such node would hold up all others in the
+    // line search; it rather stops, and the relaxation decides how it goes on.
+    if (functional.keep_slip(v, u, state) > 0)
+      problem.matrix.vmult(Av.begin(), v.begin());
     double curvature = v * Av;
     if (!(curvature > 0))
       return 0.;

@@ -114,6 +114,39 @@ namespace Friction
 
 
   template <int dim>
+  unsigned int
+  TrescaFunctional<dim>::keep_slip(VectorType         &v,
+                                   const VectorType   &u,
+                                   const ContactState &state) const
+  {
+    unsigned int n_changed = 0;
+    if (state.has_friction())
+      for (unsigned int p = 0; p < problem.contact.size(); ++p)
+        if (state.normal_force(p) > 0 && !state.sticks(p))
+          {
+            const ContactNode<dim> &node = problem.contact[p];
+            const auto              a    = tangential_components<dim>(node, u);
+            const auto              b    = tangential_components<dim>(node, v);
+            double                  uu = 0, uv = 0;
+            for (unsigned int t = 0; t < dim - 1; ++t)
+              {
+                uu += a[t] * a[t];
+                uv += a[t] * b[t];
+              }
+            if (uu + uv >= 0 || uu == 0)
+              continue;
+            ++n_changed;
+            for (unsigned int t = 1; t < dim; ++t)
+              for (unsigned int d = 0; d < dim; ++d)
+                v.local_element(dim * node.node + d) -=
+                  (uu + uv) / uu * a[t - 1] * node.frame[t][d];
+          }
+    return n_changed;
+  }
+
+
+
+  template <int dim>
   double
   TrescaFunctional<dim>::minimize_along(const VectorType   &v,
                                         const VectorType   &u,

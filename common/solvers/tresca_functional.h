@@ -38,6 +38,15 @@ namespace Friction
     unsigned int project(VectorType &v, const VectorType &u) const;
 
     /**
+     * Changes @p v such that at each sliding node $(u+v)_T\cdot u_T\ge0$: no
+     * node slips back beyond where it came from. Returns the number of nodes
+     * where it had to.
+     */
+    unsigned int keep_slip(VectorType         &v,
+                           const VectorType   &u,
+                           const ContactState &state) const;
+
+    /**
      * The exact minimiser of $\hat J(u+\alpha v)$ over $0\le\alpha\le$ @p
      * largest, the obstacle being disregarded. The energy is convex along the
      * line and smooth but for the points where a node changes its direction of
