@@ -159,10 +159,16 @@ namespace Friction
         if (constraints.is_hanging(node) || node >= constraints.n_owned_nodes())
           continue;
 
-        const Tensor<1, dim> normal = contact_normal == ContactNormal::body
+        Tensor<1, dim> normal = contact_normal == ContactNormal::body
           ? share.normal / share.normal.norm()
           : obstacle.normal(share.point);
-        const double         gap    = obstacle.gap(share.point, normal);
+        // What rounding adds to the normal in a direction in which the node is
+        // held would keep the prescribed value from being read back exactly,
+        // and a node that is held at zero there from sticking.
+        for (unsigned int d = 0; d < dim; ++d)
+          if (constraints.is_prescribed(node, d) && std::abs(normal[d]) < 1e-8)
+            normal[d] = 0.;
+        const double gap = obstacle.gap(share.point, normal);
         if (!std::isfinite(gap))
           continue;
 

@@ -52,33 +52,48 @@ namespace Friction
 
 
 
+  // Being strictly convex, the problem has one solution, so that whichever of
+  // the two cases fits is the right one; the likelier one is tried first.
   template <int dim>
   LocalSolution<dim>
   LocalProblem<dim>::solve(const std::array<double, dim>     &b,
                            const double                       bound,
-                           const std::array<double, dim - 1> &prescribed) const
+                           const std::array<double, dim - 1> &prescribed,
+                           const bool contact_is_likely) const
   {
     LocalSolution<dim>          z;
     std::array<double, dim - 1> force;
+    const auto                  normal_force = [&](const double z_n) {
+      double r = b[0] - a_nn * z_n;
+      for (unsigned int i = 0; i < dim - 1; ++i)
+        r -= a_tn[i] * z.tangential[i];
+      return r;
+    };
+    const auto solve_in_contact = [&]() {
+      z.normal = gap;
+      for (unsigned int i = 0; i < dim - 1; ++i)
+        force[i] = b[i + 1] - a_tn[i] * gap;
+      z.tangential = contact.solve(force, bound, prescribed);
+    };
 
-    // Without the obstacle.
-    for (unsigned int i = 0; i < dim - 1; ++i)
-      force[i] = b[i + 1] - a_tn[i] * b[0] / a_nn;
-    z.tangential = open.solve(force, bound, prescribed);
-
-    double normal_force = b[0];
-    for (unsigned int i = 0; i < dim - 1; ++i)
-      normal_force -= a_tn[i] * z.tangential[i];
-    z.normal     = normal_force / a_nn;
-    z.in_contact = !(z.normal < gap);
-
-    // With it.
-    if (z.in_contact)
+    // At the obstacle, if it pushes and does not pull.
+    z.in_contact = false;
+    if (contact_is_likely)
       {
-        z.normal = gap;
+        solve_in_contact();
+        z.in_contact = (normal_force(gap) > 0);
+      }
+
+    // Without the obstacle, and, if that penetrates, with it.
+    if (!z.in_contact)
+      {
         for (unsigned int i = 0; i < dim - 1; ++i)
-          force[i] = b[i + 1] - a_tn[i] * gap;
-        z.tangential = contact.solve(force, bound, prescribed);
+          force[i] = b[i + 1] - a_tn[i] * b[0] / a_nn;
+        z.tangential = open.solve(force, bound, prescribed);
+        z.normal     = normal_force(0.) / a_nn;
+        z.in_contact = !(z.normal < gap);
+        if (z.in_contact)
+          solve_in_contact();
       }
 
     z.sticks = n_free_tangents > 0 && bound > 0;

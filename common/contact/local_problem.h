@@ -65,11 +65,14 @@ namespace Friction
      * @param bound       $s \ge 0$; zero means no friction.
      * @param prescribed  values of the tangential displacements that cannot
      *                    move; the others are ignored.
+     * @param contact_is_likely  which of the two cases to try first: this does
+     *                    not change the solution, but with a good guess only
+     *                    one slip problem has to be solved.
      */
-    LocalSolution<dim>
-    solve(const std::array<double, dim>     &b,
-          const double                       bound,
-          const std::array<double, dim - 1> &prescribed) const;
+    LocalSolution<dim> solve(const std::array<double, dim>     &b,
+                             const double                       bound,
+                             const std::array<double, dim - 1> &prescribed,
+                             const bool contact_is_likely = false) const;
 
   private:
     double                      a_nn;

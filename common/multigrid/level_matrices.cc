@@ -18,6 +18,11 @@ namespace Friction
     , untruncated_traces(matrices.size())
     , position_of_column(matrices.size())
   {
+    unsigned int largest = 0;
+    for (unsigned int k = 0; k < hierarchy.n_levels(); ++k)
+      largest = std::max(largest, hierarchy.level(k).n_nodes());
+    slot_of_finer_column.assign(largest, 0);
+
     for (unsigned int k = matrices.size(); k-- > 0;)
       {
         const unsigned int n_nodes = hierarchy.level(k).n_nodes();
@@ -182,6 +187,10 @@ namespace Friction
         std::fill_n(B.block(e), dim * dim, 0.);
       }
 
+    // P^T B first, summed up by columns of the finer level, of which there are
+    // far fewer than blocks; then times P.
+    finer_columns.clear();
+    finer_sums.clear();
     for_each_contribution(
       k,
       row,
@@ -208,16 +217,25 @@ namespace Friction
       [&](const double       weight,
           const unsigned int finer_column,
           const double      *block) {
-        for (auto p = parents.begin(finer_column);
-             p != parents.end(finer_column);
-             ++p)
+        unsigned int &slot = slot_of_finer_column[finer_column];
+        if (slot >= finer_columns.size() || finer_columns[slot] != finer_column)
           {
-            double      *target = B.block(begin + position[p->node]);
-            const double w      = weight * p->weight;
-            for (unsigned int d = 0; d < dim * dim; ++d)
-              target[d] += w * block[d];
+            slot = finer_columns.size();
+            finer_columns.push_back(finer_column);
+            finer_sums.push_back(zero_block<dim>());
           }
+        for (unsigned int d = 0; d < dim * dim; ++d)
+          finer_sums[slot][d] += weight * block[d];
       });
+    for (unsigned int slot = 0; slot < finer_columns.size(); ++slot)
+      for (auto p = parents.begin(finer_columns[slot]);
+           p != parents.end(finer_columns[slot]);
+           ++p)
+        {
+          double *target = B.block(begin + position[p->node]);
+          for (unsigned int d = 0; d < dim * dim; ++d)
+            target[d] += p->weight * finer_sums[slot][d];
+        }
   }
 
 

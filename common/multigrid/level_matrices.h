@@ -104,6 +104,11 @@ namespace Friction
 
     std::vector<std::vector<unsigned int>> position_of_column;
 
+    // Of the row that is being computed: its sums by columns of the finer
+    // level.
+    std::vector<unsigned int>   slot_of_finer_column, finer_columns;
+    std::vector<NodeBlock<dim>> finer_sums;
+
     void make_pattern(const unsigned int level);
 
     void compute_row(const unsigned int level, const unsigned int row);

@@ -172,8 +172,9 @@ namespace Friction
           tangential[e - 1] = node.frame[e] * old_value;
       }
 
-    const LocalSolution<dim> z = local_problems[p].solve(b, bound, tangential);
-    Tensor<1, dim>           new_value = z.normal * node.normal();
+    const LocalSolution<dim> z =
+      local_problems[p].solve(b, bound, tangential, state.in_contact(p));
+    Tensor<1, dim> new_value = z.normal * node.normal();
     for (unsigned int t = 1; t < dim; ++t)
       new_value += z.tangential[t - 1] * node.frame[t];
     for (unsigned int d = 0; d < dim; ++d)

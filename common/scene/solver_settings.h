@@ -49,7 +49,7 @@ namespace Friction
    */
   enum class LocalSolver
   {
-    secular_equation, ///< one scalar equation for the amount of slip
+    secular_equation, ///< one scalar equation for the direction of slip
     uzawa             ///< the thesis's iteration for the tangential force
   };
 
