@@ -327,10 +327,10 @@ namespace StepFriction3d
   // continued in the direction of $z$. Its ends are planes of symmetry,
   // $u_z=0$, also where they meet the contact boundary. The frames of these
   // nodes are chosen such that the tangents that cannot move come last, and
-  // <code>n_free_tangents</code> counts the others. With one free tangent the
-  // node has the local problem of two dimensions, with none it has only a
-  // normal. A prescribed component that has a part in normal direction would
-  // compete with contact and is rejected.
+  // <code>n_free_tangents</code> counts the others. With one free tangent and a
+  // prescribed value of zero, the node has the local problem of two dimensions.
+  // A prescribed component that has a part in normal direction would compete
+  // with contact and is rejected.
   //
   // <i>Data that do not fit together.</i> In the scene <code>cylinder</code>
   // the cylinder lies on two rods, and it is pushed down by holding its end
@@ -340,12 +340,12 @@ namespace StepFriction3d
   // must not be. So along a short arc, $u_n$ jumps from the prescribed value to
   // the gap. A function with a jump along a curve in the boundary is not the
   // trace of a displacement with finite energy: it only just fails, the energy
-  // grows like the logarithm of the mesh width. On each mesh there is a
-  // solution, away from the four spots it converges, but energy and stress at
-  // the spots mean nothing. We do not want to get into this by mistake, and
-  // such nodes are an error in the scene, unless it says <code>Contact/Ignore
-  // prescribed penetration = true</code>. Then these nodes are held as
-  // prescribed and, like all nodes that cannot move, are no contact nodes.
+  // grows like $\log(1/h)$. Each mesh has a solution, but its stress at the
+  // four spots tends to nothing in particular. We do not want to get into this
+  // by mistake, and such nodes are an error in the scene, unless it says
+  // <code>Contact/Ignore prescribed penetration = true</code>. Then these nodes
+  // are held as prescribed and, like all nodes that cannot move, are no contact
+  // nodes.
   template <int dim>
   void
   ContactProblem<dim>::setup_contact_boundary()
@@ -580,12 +580,14 @@ namespace StepFriction3d
   // $\omega''_p$ is much larger than the elastic stiffness, a gradient across
   // the slip then leads to a correction that is too large by about that factor.
   // Without a line search the energy may rise, and convergence was lost in some
-  // of the problems of Remark 6.7. With one, the whole correction is scaled
-  // down to what its worst node can bear. The third variant,
-  // <code>contact</code>, is that of the three-dimensional example in the
-  // thesis: all nodes in contact are truncated entirely, there is no
-  // $\omega''$, and coarse matrices change only when nodes come into contact or
-  // lose it. But coarse functions cannot move a zone that slides.
+  // of the problems of Remark 6.7; try it in the scene <code>cylinder</code>,
+  // together with <code>Solver/Coarse correction = monotone</code>. With a line
+  // search the method converges, the correction being scaled down, all of it,
+  // to what its worst node can bear. The third variant, <code>contact</code>,
+  // is that of the three-dimensional example in the thesis: all nodes in
+  // contact are truncated entirely, there is no $\omega''$, and coarse matrices
+  // change only when nodes come into contact or lose it. But coarse functions
+  // cannot move a zone that slides.
   //
   // <i>Line search and recombination.</i> Along a correction $v$ the energy
   // $\hat J(u+\alpha v)$ was a parabola plus a piecewise linear function. Now
@@ -656,20 +658,19 @@ namespace StepFriction3d
           (*contact_boundary)[p].measure *
             scene.friction_bound()->value((*contact_boundary)[p].point));
 
-    // The constructor computes what is needed once per mesh, and here is what
-    // the memory goes into: one matrix of $3\times3$ blocks on the leaf mesh;
-    // the inverses of its diagonal blocks, one block per node; the level
+    // What is needed once per mesh is computed here, and nearly all memory is
+    // in place then. It goes into one matrix of $3\times3$ blocks on the leaf
+    // mesh; the inverses of its diagonal blocks, one block per node; the level
     // matrices, in the same format and usually with fewer rows in all;
     // projectors, $\omega''$ and local problems with their eigenbases, at
     // contact nodes only; and about a dozen vectors of three numbers per node,
-    // four of which belong to the recombination. Next to the 243 numbers of a
-    // row these hardly count.
+    // four of which belong to the recombination. What is due to contact and
+    // friction is a small part of all this.
     CoulombSolver<dim> solver(
       dof_handler, hierarchy, problem, parameters.solver);
     setup_seconds += timer.wall_time();
 
-    timer.restart();
-    // And here is where the time goes: sweeps over the leaf mesh, most of all,
+    // In this call the time is spent, most of it in sweeps over the leaf mesh,
     // which read 27 blocks per node. To relax a contact node is not much dearer
     // than to relax any other. For both, a row of the matrix is multiplied with
     // $u$, and that product gives the normal force $\tau(p)$ of the
@@ -686,11 +687,11 @@ namespace StepFriction3d
     // unknowns, and its factors fill in; but it is factorised anew only when it
     // has changed.
     //
-    // All the rest of what has been explained above happens in this call, and
-    // it comes back with the certificate. Two of its six numbers are about
+    // The call returns with the certificate. Two of its six numbers are about
     // vectors now: the tangential force must be inside a cone with a circular
     // section, and where a node slips, must be exactly opposite to the slip, in
     // direction as well as in size.
+    timer.restart();
     report =
       solver.solve(displacement,
                    *state,
@@ -747,8 +748,8 @@ namespace StepFriction3d
   // halving of the cells brings about as much new energy as the one before, and
   // the estimator is right to find the largest errors always in the same place.
   // By the rule of the maximum it marks the four spots and next to nothing
-  // else, for ever. There is no threshold that cures this, since what is wrong
-  // is in the data and not in the mesh.
+  // else, for ever. A lower threshold only delays this, since what is wrong is
+  // in the data and not in the mesh.
   //
   // With <code>Refinement/Contact zone = true</code> all cells in contact are
   // refined besides. The zone keeps one width of the mesh all over and is
