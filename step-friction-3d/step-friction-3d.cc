@@ -332,20 +332,22 @@ namespace StepFriction3d
   // A prescribed component that has a part in normal direction would compete
   // with contact and is rejected.
   //
-  // <i>Data that do not fit together.</i> In the scene <code>cylinder</code>
-  // the cylinder lies on two rods, and it is pushed down by holding its end
-  // faces at $u=(0,-0.01,0)$. The nodes around the end faces belong to the
-  // mantle as well, and where these circles meet the rods, in four spots, they
-  // are prescribed to be inside the rods. Their neighbours along the mantle
-  // must not be. So along a short arc, $u_n$ jumps from the prescribed value to
-  // the gap. A function with a jump along a curve in the boundary is not the
-  // trace of a displacement with finite energy: it only just fails, the energy
-  // grows like $\log(1/h)$. Each mesh has a solution, but its stress at the
-  // four spots tends to nothing in particular. We do not want to get into this
-  // by mistake, and such nodes are an error in the scene, unless it says
-  // <code>Contact/Ignore prescribed penetration = true</code>. Then these nodes
-  // are held as prescribed and, like all nodes that cannot move, are no contact
-  // nodes.
+  // <i>Data that do not fit together.</i> The scene <code>cylinder</code> is
+  // that of the thesis. A cylinder lies on two rods, and is pushed down by
+  // holding its end faces at $u=(0,-0.01,0)$. The rims of the end faces belong
+  // to the mantle as well, and where a rod is as long as the cylinder, a few
+  // nodes of them, in four spots, are prescribed to be inside it. Their
+  // neighbours along the mantle must not be. So along a short arc, $u_n$ jumps
+  // from the prescribed value to the gap. A function with a jump along a curve
+  // in the boundary is not the trace of a displacement with finite energy: it
+  // only just fails, the energy grows like $\log(1/h)$. Each mesh has a
+  // solution, but its stress at the four spots tends to nothing in particular.
+  // We do not want to get into this by mistake, and such nodes are an error in
+  // the scene, unless it says <code>Contact/Ignore prescribed penetration =
+  // true</code>. Then these nodes are held as prescribed and, like all nodes
+  // that cannot move, are no contact nodes. Rods that end a little before the
+  // cylinder does have the same effect, as long as cells are longer than what
+  // is missing.
   template <int dim>
   void
   ContactProblem<dim>::setup_contact_boundary()
@@ -567,12 +569,12 @@ namespace StepFriction3d
   // - It changes with each iterate and at each sliding node. Taken literally,
   //   all rows near the contact zone would be computed anew in each cycle, on
   //   all levels. The library keeps $\omega''_p$ for as long as it is right
-  //   within 10 %. That will do, since the gradient is always exact and the
-  //   matrices only serve to find a direction. When the iterates settle,
-  //   updates cease.
-  // - Infinity is no number. $\omega''_p$ is cut off at $10^8$ times the trace
-  //   of the node's block of $A$. Nothing turns there any more; more would only
-  //   cost digits.
+  //   within 10 % of itself and of the stiffness that it is added to. That will
+  //   do, since the gradient is always exact and the matrices only serve to
+  //   find a direction. When the iterates settle, updates cease.
+  // - Infinity is no number. $\omega''_p$ is cut off at $10^8$ times the
+  //   stiffness of the node, the mean of the diagonal of its block of $A$.
+  //   Nothing turns there any more; more would only cost digits.
   //
   // What if $\omega''$ is left out? <code>Solver/Truncation = phases without
   // second order</code> does this. Phases and gradients are right, only the
@@ -582,12 +584,12 @@ namespace StepFriction3d
   // Without a line search the energy may rise, and convergence was lost in some
   // of the problems of Remark 6.7; try it in the scene <code>cylinder</code>,
   // together with <code>Solver/Coarse correction = monotone</code>. With a line
-  // search the method converges, the correction being scaled down, all of it,
-  // to what its worst node can bear. The third variant, <code>contact</code>,
-  // is that of the three-dimensional example in the thesis: all nodes in
-  // contact are truncated entirely, there is no $\omega''$, and coarse matrices
-  // change only when nodes come into contact or lose it. But coarse functions
-  // cannot move a zone that slides.
+  // search the energy falls in any case, but the correction is shortened as a
+  // whole to what its worst nodes can bear. The third variant,
+  // <code>contact</code>, is that of the three-dimensional example in the
+  // thesis: all nodes in contact are truncated entirely, there is no
+  // $\omega''$, and coarse matrices change only when nodes come into contact or
+  // lose it. But coarse functions cannot move a zone that slides.
   //
   // <i>Line search and recombination.</i> Along a correction $v$ the energy
   // $\hat J(u+\alpha v)$ was a parabola plus a piecewise linear function. Now
@@ -607,21 +609,29 @@ namespace StepFriction3d
   // is not lost: the combination is only a direction, and the line search sees
   // the true energy.
   //
+  // Before the line search the correction is looked at once more, node by node.
+  // It may want a node to reverse its slip, $(u+v)_T\cdot u_T<0$, for the model
+  // knows nothing of the kink on the way. Such a node would hold up all others,
+  // since the line search would have to stop near its kink. Its correction is
+  // therefore cut off where the component along the slip becomes zero, and it
+  // is left to the relaxation how this node goes on. (This is done in two
+  // dimensions, too.) It changes the direction once more, and once more it is
+  // the line search that answers for the energy.
+  //
   // <i>Which guarantees remain?</i> With given $\tau$ and <code>Solver/Coarse
   // correction = truncated</code> the energy never rises, as in two dimensions,
   // because the line search sees to it. The bounds of <code>monotone</code>
-  // keep corrections admissible, and keep a sliding node from moving beyond the
-  // line through $u_T=0$ perpendicular to its slip. In two dimensions the
-  // energy is <i>quadratic</i> within these bounds, so that lowering the model
-  // lowers the energy. In three it is not. Let a node have slip $(1,0)$, and
-  // correct it by $(a,h)$, $-1<a$. Its friction is $s\sqrt{(1+a)^2+h^2}\approx
-  // s(1+a+\frac{h^2}{2(1+a)})$, while the model says $s(1+a+\frac{h^2}2)$. If
-  // the correction shortens the slip, $a<0$, the model underestimates the
-  // energy, and the more so the closer the node gets to rest. Bounds do not
-  // prevent this. Therefore <code>monotone</code>, which has no line search,
-  // has no guarantee in three dimensions, not even for given $\tau$. It has to
-  // rely on the relaxation to repair what went wrong, and on the certificate to
-  // tell whether that worked.
+  // keep corrections admissible, and keep sliding nodes from reversing their
+  // slip. In two dimensions the energy is <i>quadratic</i> within these bounds,
+  // so that lowering the model lowers the energy. In three it is not. Let a
+  // node have slip $(1,0)$, and correct it by $(a,h)$, $-1<a$. Its friction is
+  // $s\sqrt{(1+a)^2+h^2}\approx s(1+a+\frac{h^2}{2(1+a)})$, while the model
+  // says $s(1+a+\frac{h^2}2)$. If the correction shortens the slip, $a<0$, the
+  // model underestimates the energy, and the more so the closer the node gets
+  // to rest. Bounds do not prevent this. Therefore <code>monotone</code>, which
+  // has no line search, has no guarantee in three dimensions, not even for
+  // given $\tau$. It has to rely on the relaxation to repair what went wrong,
+  // and on the certificate to tell whether that worked.
   template <int dim>
   void
   ContactProblem<dim>::solve(const unsigned int level)
@@ -880,8 +890,8 @@ namespace StepFriction3d
 
   // @sect4{ContactProblem::run}
 
-  // The loop over levels. Eck's bound is another one in three dimensions, and
-  // smaller: $\sqrt{1-\frac1{4(1-\nu)}}$.
+  // The loop over levels. Eck's bound is another one in three dimensions,
+  // $\sqrt{1-\frac1{4(1-\nu)}}$, and smaller for positive Poisson ratios.
   template <int dim>
   bool
   ContactProblem<dim>::run()
