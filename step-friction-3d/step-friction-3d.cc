@@ -581,15 +581,15 @@ namespace StepFriction3d
   // coarse matrices do not know that turning the slip costs energy. Where
   // $\omega''_p$ is much larger than the elastic stiffness, a gradient across
   // the slip then leads to a correction that is too large by about that factor.
-  // Without a line search the energy may rise, and convergence was lost in some
-  // of the problems of Remark 6.7; try it in the scene <code>cylinder</code>,
-  // together with <code>Solver/Coarse correction = monotone</code>. With a line
-  // search the energy falls in any case, but the correction is shortened as a
-  // whole to what its worst nodes can bear. The third variant,
-  // <code>contact</code>, is that of the three-dimensional example in the
-  // thesis: all nodes in contact are truncated entirely, there is no
-  // $\omega''$, and coarse matrices change only when nodes come into contact or
-  // lose it. But coarse functions cannot move a zone that slides.
+  // Without a line search nothing keeps it from raising the energy, and
+  // convergence was lost in some of the problems of Remark 6.7; try it in the
+  // scene <code>cylinder</code>, together with <code>Solver/Coarse correction =
+  // monotone</code>. With a line search the energy falls in any case, but the
+  // correction is shortened as a whole to what its worst nodes can bear. The
+  // third variant, <code>contact</code>, is that of the three-dimensional
+  // example in the thesis: all nodes in contact are truncated entirely, there
+  // is no $\omega''$, and coarse matrices change only when nodes come into
+  // contact or lose it. But coarse functions cannot move a zone that slides.
   //
   // <i>Line search and recombination.</i> Along a correction $v$ the energy
   // $\hat J(u+\alpha v)$ was a parabola plus a piecewise linear function. Now
