@@ -1,8 +1,9 @@
 // @sect3{Include files}
 
-// The first block is what any parallel adaptive program of the tutorial needs,
-// step-40 for example; the only newcomer is the header of the Trilinos matrix
-// that the stiffness matrix is gathered in.
+// All header files are those of step-friction-2d. What is new in three
+// dimensions happens inside the library, most of it in
+// <code>contact/slip_problem.h</code>, <code>multigrid/linearization.h</code>
+// and <code>solvers/tresca_functional.h</code>.
 #include <deal.II/base/function.h>
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
@@ -26,12 +27,6 @@
 
 #include <deal.II/numerics/vector_tools.h>
 
-// The second block is the library that comes with this program. Each header is
-// named after the one subject it has: what is modelled (<code>scene</code>),
-// the contact boundary (<code>contact</code>), the levels and what is done on
-// them (<code>multigrid</code>), the nonlinear iterations
-// (<code>solvers</code>), where to refine (<code>estimate</code>), and what is
-// written (<code>output</code>).
 #include <common/compatibility.h>
 #include <common/contact/contact_boundary.h>
 #include <common/contact/nodal_constraints.h>
@@ -64,34 +59,28 @@ namespace StepFriction3d
   using namespace dealii;
   using namespace Friction;
 
+
   // @sect3{The <code>ContactProblem</code> class}
 
-  // The main class looks like that of step-40, with the same cycle of setting
-  // up, assembling, solving, estimating and refining. Two things are different.
-  //
-  // First, the stiffness matrix is assembled by Trilinos, which knows how to
-  // gather contributions from several processes, but then copied to a
-  // <code>NodeBlockMatrix</code>: contact is a matter of nodes, not of single
-  // degrees of freedom, and the solver below works with the $d\times d$ blocks
-  // that couple two nodes.
-  //
-  // Second, there are two kinds of constraints, and they are kept apart.
-  // Hanging nodes are condensed, as always. Prescribed displacements are not:
-  // the rows of prescribed degrees of freedom stay in the matrix, so that
-  // $Au-f$ is the nodal force at any node of the body, and the solver simply
-  // leaves these components alone. The nodal forces on the contact boundary are
-  // the unknowns we care about most.
-  //
-  // What you will not find in this class are the three things that the method
-  // is about, and it is good to know from the start where they are. The
-  // friction cone $|R_T(p)|\le\mathcal F\tau(p)$ is enforced node by node, in
-  // the local problems (6.15) of the leading relaxation. Truncation happens
-  // once per cycle, right after this relaxation, in the residual and the
-  // matrices that the levels below the leaf mesh get to see. And a cycle costs
-  // a fixed number of sweeps over the nodes, with no factorisation but that of
-  // the coarsest mesh. All of it is behind the one call of
-  // <code>CoulombSolver::solve()</code> in the function <code>solve()</code>,
-  // and this is where we explain it.
+  // This is the class of step-friction-2d, and its members and most of its
+  // functions are the same. That program explains nodal forces, the state of
+  // contact nodes, the five parts of a multigrid step, truncation, the two
+  // algorithms and the certificate. Here we explain what three dimensions add,
+  // each at the place in the program where it happens:
+  // - The coarse mesh decides about more than its number of cells
+  //   (<code>make_coarse_mesh()</code>).
+  // - Nodes hang <i>on</i> the contact boundary (<code>setup_system()</code>).
+  //   There are two tangents at each contact node, one of which may be
+  //   prescribed, and there are scenes whose prescribed displacements
+  //   contradict the obstacle (<code>setup_contact_boundary()</code>).
+  // - A row of the stiffness matrix has three times as many blocks, and each of
+  //   them is more than twice as large (<code>assemble_system()</code>).
+  // - The direction of slip is unknown. This makes the local problems
+  //   nonlinear, and friction gets a second derivative, with consequences for
+  //   coarse matrices, the line search, and the guarantees that each kind of
+  //   coarse correction comes with (<code>solve()</code>).
+  // - Where an edge of the body meets the obstacle, the estimator may find
+  //   nothing else worth refining (<code>mark_cells()</code>).
   template <int dim>
   class ContactProblem
   {
@@ -101,12 +90,14 @@ namespace StepFriction3d
     bool run();
 
   private:
-    // The functions in the order in which they are called. Everything up to
-    // <code>solve()</code> is linear elasticity, plus knowledge of the
-    // obstacle. <code>run()</code> says whether all levels could be solved.
+    // The functions in the order in which they are called. There is one more
+    // than in two dimensions, because there is more to say about the contact
+    // boundary.
     void make_coarse_mesh();
 
     void setup_system();
+
+    void setup_contact_boundary();
 
     void assemble_system();
 
@@ -120,53 +111,41 @@ namespace StepFriction3d
 
     void record_level(const unsigned int level, const ErrorEstimate &estimate);
 
-    // What is modelled: the scene file as the user wrote it, and the functions,
-    // boundary ids and obstacle it has been turned into.
+    // The scene, and the finite element space. $Q_1$ elements are essential to
+    // the method, for the reason given in step-friction-2d: interpolation
+    // weights have to lie between zero and one. In three dimensions this
+    // includes the weights of hanging nodes, which are 1/2 in the middle of an
+    // edge and 1/4 in the middle of a face.
     const Parameters parameters;
     const Scene<dim> scene;
 
-    // The finite element space. The element is fixed to $Q_1$, and this is not
-    // for convenience: the argument that a correction stays admissible on finer
-    // levels needs interpolation weights between zero and one, which higher
-    // degrees do not have.
     parallel::distributed::Triangulation<dim> triangulation;
     const MappingQ<dim>                       mapping;
     const FESystem<dim>                       fe;
     DoFHandler<dim>                           dof_handler;
 
-    // The discrete problem, made anew for each mesh. The two kinds of
-    // constraints are in the first two members: hanging nodes as an object of
-    // deal.II, because they are condensed; all that is known about single nodes
-    // before any contact, prescribed components among it, as an object of our
-    // own.
+    // The discrete problem on the present mesh. As in two dimensions hanging
+    // nodes are condensed and prescribed displacements are not.
     AffineConstraints<double>              hanging_node_constraints;
     std::unique_ptr<NodalConstraints<dim>> nodal_constraints;
     std::unique_ptr<ContactBoundary<dim>>  contact_boundary;
     NodeBlockMatrix<dim>                   stiffness;
     VectorType                             forces;
 
-    // The solution on the present mesh. Besides $u$ it includes the contact
-    // state: flags that say which nodes touch and which of these stick, and the
-    // nodal normal forces $\tau(p)$. They are not derived from $u$ but set by
-    // the local problems, for after a rotation to the frame of a node and back
-    // $u_n=g$ holds only up to rounding. The tractions, $R(p)/m_p$ at the nodes
-    // in contact, are what the next mesh, the estimator and ParaView get to see
-    // of the forces.
+    // The solution. That a node sticks is a flag of the state and cannot be
+    // read off $u_T$: a slip of $10^{-12}$ still has a direction, and the force
+    // follows it.
     VectorType                    displacement;
     VectorType                    tractions;
     std::unique_ptr<ContactState> state;
     SolverReport                  report;
 
-    // Where results go. The order matters: the directory is created first, so
-    // that a run which cannot write anything fails in its first second and not
-    // after its last level.
+    // Where results go, and wall times.
     RunDirectory     directory;
     Console          console;
     History<dim>     history;
     FieldWriter<dim> fields;
 
-    // Wall times of the present level. What is done once per mesh and what the
-    // iteration takes are counted separately.
     double setup_seconds    = 0.;
     double solve_seconds    = 0.;
     double last_exact_error = 0.;
@@ -176,11 +155,11 @@ namespace StepFriction3d
 
   // @sect4{ContactProblem::ContactProblem}
 
-  // Multigrid on locally refined meshes wants the levels of the triangulation
-  // to have degrees of freedom of their own, hence
-  // <code>construct_multigrid_hierarchy</code>. The other flag keeps cells that
-  // share but a vertex within one level of each other. Our level matrices rely
-  // on it: it makes each hanging node belong to exactly one level.
+  // It is in three dimensions that
+  // <code>limit_level_difference_at_vertices</code> is really needed. Without
+  // it, masters of a hanging node might hang as well, and a hanging node might
+  // belong to several levels. With it, level matrices are sums of blocks of the
+  // leaf matrix, as in two dimensions.
   template <int dim>
   ContactProblem<dim>::ContactProblem(const Parameters &parameters,
                                       std::ostream     &out)
@@ -212,9 +191,24 @@ namespace StepFriction3d
 
   // @sect4{ContactProblem::make_coarse_mesh}
 
-  // The mesh is a matter of the scene. The coarsest level is solved directly,
-  // so it should be as coarse as the geometry allows; whatever else is refined
-  // globally at the start only has the first level begin on a finer mesh.
+  // A mesh of a round body is refined by putting new vertices of the mantle on
+  // the mantle, which the manifold of the boundary takes care of. This is not
+  // enough to get good cells, and the scene <code>cylinder</code> lets you see
+  // why. With <code>Scene/Coarse grid = one cell</code> it starts as in the
+  // thesis, with a single hexahedron that has four of its edges on the mantle.
+  // On each of these edges two faces of the same cell meet, and both of them
+  // lie on the mantle. They meet at a right angle at first, and at a flatter
+  // one after each refinement, because the mantle has no edge there. The angle
+  // tends to 180 degrees, and the determinant of the Jacobian in this corner to
+  // zero. The thesis attributes the growing numbers of cycles in its table 6.2
+  // to these elements.
+  //
+  // By default the cylinder has an O-grid, a core surrounded by a ring of
+  // cells. Each cell has at most one face on the mantle, and the cells of the
+  // ring pass from the shape of the core to the circle by transfinite
+  // interpolation. Their angles do not depend on how fine the mesh is. The
+  // coarsest problem, which is solved directly, is larger; that is the better
+  // bargain.
   template <int dim>
   void
   ContactProblem<dim>::make_coarse_mesh()
@@ -227,13 +221,10 @@ namespace StepFriction3d
 
   // @sect4{ContactProblem::setup_system}
 
-  // <code>distribute_dofs</code> numbers the degrees of freedom of the leaf
-  // mesh, <code>distribute_mg_dofs</code> those of each level. With
-  // <code>FESystem(FE_Q(1), dim)</code> the $d$ degrees of freedom of a vertex
-  // get consecutive numbers in either case, and that is all we need to speak of
-  // nodes. <code>renumber_nodes</code> then makes nodes that are neighbours
-  // neighbours in memory, too: it does not change the method, but lets its
-  // relaxation sweeps run at the speed of the cache.
+  // Degrees of freedom for the leaf mesh and for all levels, numbered node by
+  // node and front by front. A front is a surface now. Sweeps that follow each
+  // other through the cache have to keep a distance of two fronts, so that it
+  // takes a larger cache than in two dimensions to hold what is between them.
   template <int dim>
   void
   ContactProblem<dim>::setup_system()
@@ -246,19 +237,35 @@ namespace StepFriction3d
     const IndexSet  relevant =
       DoFTools::extract_locally_relevant_dofs(dof_handler);
 
-    // The first kind of constraints: hanging nodes, and nothing else. They go
-    // to the assembly below, where the rows and columns of these nodes are
-    // distributed to their masters. In two dimensions none of them lies on
-    // $\Gamma_S$; in three, one that does has no law of its own.
+    // Hanging nodes. In two dimensions they are inside the body. Here they lie
+    // on the contact boundary as well, wherever the mesh gets finer along it,
+    // and the question is what law such a node has. It has none of its own:
+    // - Its displacement is interpolated from its masters. There is nothing to
+    //   minimise, so that it is no contact node and gets no phase.
+    // - Its row of $Au-f$ is condensed into those of its masters, with the
+    //   weights of the interpolation. The forces of the obstacle at the
+    //   masters, $R(p)$, include what the hanging node would have had.
+    // - Its boundary measure goes to the masters with the same weights (see
+    //   below). Therefore $R(p)/m_p$ is still a stress: with a constant
+    //   pressure it is that pressure at all nodes, and the patch test is passed
+    //   on locally refined meshes, too.
+    //
+    // The price is that $u_n\le g$ is required at the masters only. On a plane
+    // obstacle and a plane boundary this is no restriction, for what is
+    // interpolated from admissible values is admissible. On a curved boundary
+    // the hanging node has a normal and a gap of its own, and may be found
+    // inside the obstacle by an amount of second order in the width of the
+    // mesh. But this is true for any point between two nodes, hanging or not:
+    // the discrete set of admissible displacements is no subset of $\mathcal
+    // K$. The estimator looks at what remains between nodes; the certificate
+    // does not, for it is about the discrete law.
     hanging_node_constraints = Compatibility::make_constraints(owned, relevant);
     DoFTools::make_hanging_node_constraints(dof_handler,
                                             hanging_node_constraints);
     hanging_node_constraints.close();
 
-    // The second kind: prescribed displacements. An object of the same class is
-    // used to collect them, because <code>interpolate_boundary_values</code>
-    // wants one, but it is never used for eliminating anything and does not
-    // outlive this function.
+    // Prescribed displacements, which stay in the matrix, and pinned vertices,
+    // as in two dimensions.
     AffineConstraints<double> prescribed =
       Compatibility::make_constraints(owned, relevant);
     for (const auto &condition : scene.dirichlet_conditions())
@@ -269,11 +276,6 @@ namespace StepFriction3d
                                                prescribed,
                                                condition.components);
 
-    // A scene may pin single vertices, to keep a body that is only pushed from
-    // drifting away: contact can hold it from one side only, and friction does
-    // so only where it sticks, which nobody knows yet. The matrix has to be
-    // positive definite without their help. Where a boundary condition
-    // prescribes the same component already, it takes precedence.
     for (const auto &pinned : scene.pinned_points())
       for (const auto &cell : dof_handler.active_cell_iterators())
         if (!cell->is_artificial())
@@ -290,27 +292,66 @@ namespace StepFriction3d
               }
     prescribed.close();
 
-    // From here on we think in nodes. <code>NodalConstraints</code> keeps, for
-    // each node, whether it hangs and which of its components are prescribed,
-    // and it owns the layout of all vectors on the leaf mesh: node $i$ has the
-    // local indices $di,\dots,di+d-1$.
+    // From here on we think in nodes, those of the contact boundary in
+    // particular.
     nodal_constraints = std::make_unique<NodalConstraints<dim>>(
       dof_handler, hanging_node_constraints, prescribed);
 
-    // Now for contact. The obstacle is rigid and known, so that all there is to
-    // know about it are the nodes of the body that may touch it, the direction
-    // in which each of them would do so, and how far it is away: the gap.
-    // Displacements are supposed to be small: normals and gaps are those of the
-    // undeformed body.
-    //
-    // Each contact node also gets the boundary measure that it stands for,
-    // $m_p=\int_{\Gamma_S}\lambda_p$. This is where the dual multipliers are,
-    // as far as a program has to know about them. Because of biorthogonality
-    // (6.9) the coefficients of the boundary stress are nodal forces, and
-    // friction is a sum over nodes (6.17); there is no mass matrix on the
-    // boundary to assemble, and no multiplier among the unknowns. The solver
-    // itself does not even need $m_p$. It is what turns forces into stresses,
-    // for whoever wants those.
+    setup_contact_boundary();
+  }
+
+
+
+  // @sect4{ContactProblem::setup_contact_boundary}
+
+  // The nodes that may touch, each with a frame, a gap and a measure.
+  //
+  // <i>Normals and gaps.</i> Several bilinear faces meet in a node, their
+  // normals all differ, and none of them is the right one. Vertices lie on the
+  // true boundary, though, and the manifold that has put them there knows its
+  // normal: on the mantle of a cylinder it is exactly radial. Along this normal
+  // $n$ the gap to a rod of radius $r$ with axis through $c$ is the smaller
+  // root of a quadratic equation; for a node $p$ with $|p|=R$ of a cylinder
+  // around the origin, in the plane across the axes,
+  // @f[
+  //   g = (c\cdot n-R)-\sqrt{r^2-|c|^2+(c\cdot n)^2}.
+  // @f]
+  // A node whose normal looks past all rods, or meets one too flatly, can be
+  // left out.
+  //
+  // <i>Frames.</i> The first vector is the normal. In two dimensions there was
+  // one tangent, up to its sign; here the two tangents may be turned in their
+  // plane at will, since $|u_T|$ is the same in any frame. This freedom is
+  // needed as soon as a tangential component is prescribed. Take
+  // <code>extruded-hertz</code>, which is the Hertz scene of two dimensions
+  // continued in the direction of $z$. Its ends are planes of symmetry,
+  // $u_z=0$, also where they meet the contact boundary. The frames of these
+  // nodes are chosen such that the tangents that cannot move come last, and
+  // <code>n_free_tangents</code> counts the others. With one free tangent and a
+  // prescribed value of zero, the node has the local problem of two dimensions.
+  // A prescribed component that has a part in normal direction would compete
+  // with contact and is rejected.
+  //
+  // <i>Data that do not fit together.</i> The scene <code>cylinder</code> is
+  // that of the thesis. A cylinder lies on two rods, and is pushed down by
+  // holding its end faces at $u=(0,-0.01,0)$. The rims of the end faces belong
+  // to the mantle as well, and where a rod is as long as the cylinder, a few
+  // nodes of them, in four spots, are prescribed to be inside it. Their
+  // neighbours along the mantle must not be. So along a short arc, $u_n$ jumps
+  // from the prescribed value to the gap. A function with a jump along a curve
+  // in the boundary is not the trace of a displacement with finite energy: it
+  // only just fails, the energy grows like $\log(1/h)$. Each mesh has a
+  // solution, but its stress at the four spots tends to nothing in particular.
+  // We do not want to get into this by mistake, and such nodes are an error in
+  // the scene, unless it says <code>Contact/Ignore prescribed penetration =
+  // true</code>. Then these nodes are held as prescribed and, like all nodes
+  // that cannot move, are no contact nodes. Rods that end a little before the
+  // cylinder does have the same effect, as long as cells are longer than what
+  // is missing.
+  template <int dim>
+  void
+  ContactProblem<dim>::setup_contact_boundary()
+  {
     contact_boundary = std::make_unique<ContactBoundary<dim>>(
       mapping,
       dof_handler,
@@ -326,21 +367,18 @@ namespace StepFriction3d
 
   // @sect4{ContactProblem::assemble_system}
 
-  // Assembly is that of linear elasticity, for friction and contact do not
-  // appear in the stiffness matrix: they only restrict what the solution may do
-  // at the nodes of the contact boundary. The bilinear form is
-  // $a(u,v)=\int \lambda\, \mathrm{div}\,u\,\mathrm{div}\,v +
-  // 2\mu\,\varepsilon(u):\varepsilon(v)$; written with the gradients $g_i$ of
-  // the scalar shape functions of components $c_i$ its entries are
-  // $\lambda\, g_{i,c_i} g_{j,c_j} + \mu\, g_{i,c_j} g_{j,c_i} +
-  // \mu\,\delta_{c_ic_j} g_i\cdot g_j$.
+  // The elastic stiffness matrix and the loads, literally as in two dimensions.
+  //
+  // A word on size. On a regular mesh a node is coupled to the $3^d$ nodes of
+  // the cells around it. In two dimensions that is nine blocks of four numbers;
+  // in three it is 27 blocks of nine, 243 numbers for three unknowns. Reading
+  // them is what everything below spends its time with. At the end of this
+  // function there are two copies of the matrix, that of Trilinos and ours:
+  // this is where the program needs most memory.
   template <int dim>
   void
   ContactProblem<dim>::assemble_system()
   {
-    // The sparsity pattern knows about hanging nodes but not about prescribed
-    // displacements, whose rows and columns we keep. The pattern is needed once
-    // more at the end of this function and must live until then.
     const IndexSet relevant =
       DoFTools::extract_locally_relevant_dofs(dof_handler);
     DynamicSparsityPattern pattern(relevant);
@@ -355,8 +393,7 @@ namespace StepFriction3d
                   Compatibility::mpi_communicator(dof_handler));
     forces.reinit(nodal_constraints->partitioner());
 
-    // For the stiffness, two quadrature points per direction are enough. Given
-    // tractions are arbitrary expressions from a scene file and get some more.
+    // Two quadrature points per direction, eight per cell.
     const QGauss<dim>     quadrature(fe.degree + 1);
     const QGauss<dim - 1> face_quadrature(fe.degree + 3);
     FEValues<dim>         fe_values(mapping,
@@ -415,8 +452,8 @@ namespace StepFriction3d
                 }
             }
 
-          // What the obstacle exerts is not among the loads. It is a reaction,
-          // and will be found in $Au-f$.
+          // Given tractions. The force of the obstacle is not among them; we
+          // look for it in $Au-f$.
           for (const unsigned int f : cell->face_indices())
             for (const auto &condition : scene.traction_conditions())
               if (cell->face(f)->at_boundary() &&
@@ -434,10 +471,8 @@ namespace StepFriction3d
                     }
                 }
 
-          // Hanging nodes are condensed in the matrix and in the loads alike.
-          // If we had passed on prescribed displacements as well, as step-40
-          // does, their rows would now be gone, and with them the reactions at
-          // the nodes that are held.
+          // Here forces and stiffness of hanging nodes go to their masters,
+          // also on the contact boundary.
           cell->get_dof_indices(dof_indices);
           hanging_node_constraints.distribute_local_to_global(
             cell_matrix, cell_forces, dof_indices, matrix, forces);
@@ -445,8 +480,8 @@ namespace StepFriction3d
     matrix.compress(VectorOperation::add);
     forces.compress(VectorOperation::add);
 
-    // Trilinos has done its part; its matrix ends with this function. The copy
-    // in $d\times d$ blocks has all that relaxing a node needs in one place.
+    // The matrix of Trilinos ends with this function. What remains are
+    // $3\times3$ blocks.
     stiffness =
       make_node_block_matrix<dim>(matrix, pattern, *nodal_constraints);
   }
@@ -455,69 +490,154 @@ namespace StepFriction3d
 
   // @sect4{ContactProblem::solve}
 
-  // Here the five parts of the method come together. What the solver is given
-  // is the discrete problem, which is no more than references to what we have
-  // set up, and the hierarchy of levels; from these it builds
-  // - the leading relaxation on the leaf mesh, which enforces contact and
-  //   friction node by node (<code>MonotoneSmoother</code>);
-  // - phases, truncation and derivatives of friction
-  //   (<code>Linearization</code>, <code>Truncation</code>);
-  // - one linear multigrid cycle for a correction (<code>CoarseCycle</code>,
-  //   on the Galerkin products in <code>LevelMatrices</code>);
-  // - projection to the admissible displacements and line search
-  //   (<code>TrescaFunctional</code>), along the correction recombined with the
-  //   last step (<code>Recombination</code>);
-  // - the energy that all of them agree on (<code>TrescaFunctional</code>).
+  // The five parts of a multigrid step, how Algorithm 3 updates $\tau$, and
+  // what the certificate says, are as in step-friction-2d. Let us go through
+  // the parts once more and see what becomes of them in three dimensions.
   //
-  // <i>Where is the friction cone?</i> In the first part, and nowhere else.
-  // When its turn comes, a contact node gets the displacement that minimises
-  // the energy with all other nodes held, (6.15). The local problem first tries
-  // to leave the obstacle; if it cannot, it puts $u_n=g$ and compares the
-  // tangential force that would hold the node at $u_T=0$ with $\mathcal
-  // F\tau(p)$. Below the bound the node sticks. Otherwise it slides, with the
-  // force equal to the bound, (6.18). So right after its turn a node satisfies
-  // its law, with this $\tau(p)$, exactly, and violates it again as soon as a
-  // neighbour moves. With Algorithm 3 the bound itself, $\tau(p)$, is taken
-  // from the intermediate iterate just before the node is relaxed, (6.19). With
-  // Algorithm 2 it is fixed, and the whole iteration described here is repeated
-  // with the forces it has found until they agree with those it was given,
-  // (6.11).
+  // <i>The local problem.</i> At a contact node of the leading relaxation the
+  // energy (6.15) is minimised over the displacement of this node alone. The
+  // normal component is easily disposed of: try without the obstacle first, and
+  // if that penetrates, set $z_n=g$. In both cases there remains a problem in
+  // the tangential plane,
+  // @f[
+  //   \tfrac12 v^TAv-b^Tv+s|v| \to \min,\qquad s=\mathcal F\tau(p),
+  // @f]
+  // with a $2\times2$ matrix $A$. If $|b|\le s$, then $v=0$, and the node
+  // sticks. Otherwise it slips, and (6.18) reads $b-Av=s\,v/|v|$. In two
+  // dimensions $v/|v|$ is one of two signs, which the force gives away. Now it
+  // is a point of a circle: the boundary of the friction cone is curved, the
+  // direction of slip is not that of $b$ unless $A$ is a multiple of the
+  // identity, and the equation is nonlinear.
   //
-  // <i>Where is truncation?</i> Between relaxation and coarse correction, at
-  // the smoothed iterate. The phase of a node decides which directions $T_p$
-  // are left to coarse functions: all at an open node, the tangent at a sliding
-  // one, none at a sticking one. On these the energy is smooth, and coarse
-  // levels solve the linear problem with the matrix $TAT$ (in two dimensions
-  // friction adds nothing to it, for $|u_T|$ is piecewise linear).
-  // Interpolation between levels is never truncated. The bounds (6.12) on
-  // coarse corrections are used by the <code>monotone</code> variant only; by
-  // default a correction may be as large as it likes, and the line search deals
-  // with it.
+  // In the eigenbasis of $A$, with eigenvalues $\lambda_1\ge\lambda_2$, write
+  // $v=Sn$ with $S=|v|$ and $|n|=1$. Then
+  // @f[
+  //   (S\lambda_i+s)\,n_i=b_i,\qquad i=1,2.
+  // @f]
+  // Eliminating $S$ leaves a scalar equation for the direction, $t=|n_2/n_1|$:
+  // @f[
+  //   \lambda_2|b_1|\,t+(\lambda_1-\lambda_2)\,s\,\frac{t}{\sqrt{1+t^2}}
+  //   =\lambda_1|b_2|.
+  // @f]
+  // Its left side grows with $t$, so there is one solution, and there are close
+  // bounds to start from: four steps of an iteration of third order suffice for
+  // all of the problems in <code>tests/contact/local_problem_3d.cc</code>. The
+  // amount of slip then follows from the square of the inclusion,
+  // @f[
+  //   |b|^2-s^2=2sS\,n^TAn+S^2|An|^2,
+  // @f]
+  // a quadratic equation in $S$ without cancellation. Nothing special happens
+  // when the slip is tiny, since the direction does not vanish with it.
   //
-  // <i>What does a cycle cost?</i> By default
-  // - three forward and three backward sweeps over the leaf mesh, contact nodes
-  //   included, whose local problems are two scalar equations at most;
-  // - one residual and one product with the matrix, for the line search; a
-  //   second product if the obstacle cuts the correction off;
-  // - six and six sweeps on the levels below. Only nodes that touch a refined
-  //   cell are relaxed there, and in two dimensions there is less than one
-  //   refined cell for three active ones, so that all of this is worth about
-  //   four sweeps over the leaf mesh;
-  // - rows of level matrices near nodes whose phase has changed, which after a
-  //   few cycles is nowhere, and a direct solution on the coarsest mesh.
+  // This is where the obvious method fails, Newton's for $v$ (Remark 6.6). Its
+  // matrix is $A+s(I-nn^T)/|v|$: extremely stiff across the slip, and not at
+  // all affected by friction along it. From the displacement that the node had
+  // before, or from a small one, a node that has to turn is sent straight
+  // through $v=0$ to the other side. Damping shortens the step, again and
+  // again, and the iterates run into $v=0$, where the energy has a kink but no
+  // minimum. They do so although the energy falls in every step. The same test
+  // shows that with tiny slips this is what happens for nearly all of these
+  // starts, and also that a better one, the minimum along the ray of $b$, would
+  // do.
   //
-  // That is linear in the number of unknowns, provided the coarsest mesh is
-  // small and the cycle a V-cycle; W-cycles are not affordable on meshes
-  // refined towards a small zone. How many cycles it takes is another question,
-  // to which we have measurements, see the results, but no theorem. For
-  // Algorithm 3 not even convergence is proved.
+  // The thesis uses a method of Uzawa, an iteration for the tangential force,
+  // and you can choose it by <code>Solver/Local solver = Uzawa</code>: with a
+  // multiplier $\mu$ in the unit disc, $v=A^{-1}(b-s\mu)$, then $\mu\leftarrow
+  // P(\mu+\rho sv)$ with the projection $P$ to the disc. It does not mind tiny
+  // slips either, but the number of its steps grows with the condition number
+  // of $A$, which is moderate only for cells of decent shape; after a thousand
+  // the library resorts to the equation above.
   //
-  // The coefficient of friction of Tresca's law is absorbed in the given
-  // bounds, hence the 1 in the problem's last entry.
+  // <i>Linearisation and truncation.</i> In two dimensions $|u_T|$ is piecewise
+  // linear, and at a node that slides friction is a constant force. In three it
+  // is the length of a vector, and
+  // @f[
+  //   \omega''_p=\frac{\mathcal F\tau(p)}{|u_T|}
+  //      \Big(I-\frac{u_Tu_T^T}{|u_T|^2}\Big)
+  // @f]
+  // on the tangential plane. Along the slip this is zero: to slip farther is
+  // against the same force as before. Across it, it is a stiffness, because the
+  // force turns with the slip, and resists. The matrix is of rank one, and
+  // grows without bound when slip goes to zero, as it does at the edge of every
+  // zone of stick. There a node can hardly be turned at all; a little farther
+  // it sticks, and is truncated completely.
+  //
+  // The coarse levels solve the problem linearised at the smoothed iterate,
+  // with the matrix $T(A+\omega'')T$ (constrained Newton linearisation).
+  // $\omega''$ gets there with the diagonal blocks of the leaf matrix, before
+  // the Galerkin products are formed. Two things need care:
+  // - It changes with each iterate and at each sliding node. Taken literally,
+  //   all rows near the contact zone would be computed anew in each cycle, on
+  //   all levels. The library keeps $\omega''_p$ for as long as it is right
+  //   within 10 % of itself and of the stiffness that it is added to. That will
+  //   do, since the gradient is always exact and the matrices only serve to
+  //   find a direction. When the iterates settle, updates cease.
+  // - Infinity is no number. $\omega''_p$ is cut off at $10^8$ times the
+  //   stiffness of the node, the mean of the diagonal of its block of $A$.
+  //   Nothing turns there any more; more would only cost digits.
+  //
+  // What if $\omega''$ is left out? <code>Solver/Truncation = phases without
+  // second order</code> does this. Phases and gradients are right, only the
+  // coarse matrices do not know that turning the slip costs energy. Where
+  // $\omega''_p$ is much larger than the elastic stiffness, a gradient across
+  // the slip then leads to a correction that is too large by about that factor.
+  // Without a line search nothing keeps it from raising the energy, and
+  // convergence was lost in some of the problems of Remark 6.7; try it in the
+  // scene <code>cylinder</code>, together with <code>Solver/Coarse correction =
+  // monotone</code>. With a line search the energy falls in any case, but the
+  // correction is shortened as a whole to what its worst nodes can bear. The
+  // third variant, <code>contact</code>, is that of the three-dimensional
+  // example in the thesis: all nodes in contact are truncated entirely, there
+  // is no $\omega''$, and coarse matrices change only when nodes come into
+  // contact or lose it. But coarse functions cannot move a zone that slides.
+  //
+  // <i>Line search and recombination.</i> Along a correction $v$ the energy
+  // $\hat J(u+\alpha v)$ was a parabola plus a piecewise linear function. Now
+  // it is a parabola plus a sum of $s|u_T+\alpha v_T|$, hyperbolas that are
+  // convex and smooth as long as no node comes to rest. The quadratic model
+  // knows only their curvature at $\alpha=0$. The line search does not use the
+  // model. It finds the root of the derivative of the true energy, which never
+  // decreases; each evaluation takes a few operations per contact node and no
+  // product with the matrix.
+  //
+  // The recombination with the last step, in contrast, is about the model:
+  // among all combinations of the new correction with the last step it takes
+  // the one with the smallest energy of the linearised problem, $\omega''$
+  // included. As long as phases stay and $\omega''$ hardly changes, the cycle
+  // is a symmetric preconditioner of that problem, and the iteration behaves
+  // like the method of conjugate gradients. If the model is poor, monotonicity
+  // is not lost: the combination is only a direction, and the line search sees
+  // the true energy.
+  //
+  // Before the line search the correction is looked at once more, node by node.
+  // It may want a node to reverse its slip, $(u+v)_T\cdot u_T<0$, for the model
+  // knows nothing of the kink on the way. Such a node would hold up all others,
+  // since the line search would have to stop near its kink. Its correction is
+  // therefore cut off where the component along the slip becomes zero, and it
+  // is left to the relaxation how this node goes on. (This is done in two
+  // dimensions, too.) It changes the direction once more, and once more it is
+  // the line search that answers for the energy.
+  //
+  // <i>Which guarantees remain?</i> With given $\tau$ and <code>Solver/Coarse
+  // correction = truncated</code> the energy never rises, as in two dimensions,
+  // because the line search sees to it. The bounds of <code>monotone</code>
+  // keep corrections admissible, and keep sliding nodes from reversing their
+  // slip. In two dimensions the energy is <i>quadratic</i> within these bounds,
+  // so that lowering the model lowers the energy. In three it is not. Let a
+  // node have slip $(1,0)$, and correct it by $(a,h)$, $-1<a$. Its friction is
+  // $s\sqrt{(1+a)^2+h^2}\approx s(1+a+\frac{h^2}{2(1+a)})$, while the model
+  // says $s(1+a+\frac{h^2}2)$. If the correction shortens the slip, $a<0$, the
+  // model underestimates the energy, and the more so the closer the node gets
+  // to rest. Bounds do not prevent this. Therefore <code>monotone</code>, which
+  // has no line search, has no guarantee in three dimensions, not even for
+  // given $\tau$. It has to rely on the relaxation to repair what went wrong,
+  // and on the certificate to tell whether that worked.
   template <int dim>
   void
   ContactProblem<dim>::solve(const unsigned int level)
   {
+    // The levels, and the discrete problem: references to what we have set up.
+    // With the law of Tresca the coefficient is absorbed in the given bounds.
     Timer                     timer;
     const LevelHierarchy<dim> hierarchy(dof_handler, *nodal_constraints);
     const bool tresca = scene.friction_law() == FrictionLaw::tresca;
@@ -529,21 +649,18 @@ namespace StepFriction3d
       scene.friction_law(),
       tresca ? 1. : scene.friction_coefficient()};
 
-    // The initial guess: what the coarser mesh has found, made admissible on
-    // this one. Prescribed values are set, nodes that are inside the obstacle
-    // are moved back along their normals, and the normal part of each traction
-    // times $m_p$ becomes the force $\tau(p)$ that friction starts with. On the
-    // first mesh everything is zero, and there is no friction before the first
-    // normal force.
+    // The initial guess: displacement and contact stresses of the coarser mesh,
+    // made admissible on this one. New nodes of a curved contact boundary lie
+    // outside of the face that they were interpolated from. Those that are
+    // inside the obstacle are moved back along their own normals, which leaves
+    // $u_T$ as it is.
     state = std::make_unique<ContactState>(
       make_initial_guess(displacement,
                          tractions,
                          *nodal_constraints,
                          *contact_boundary,
                          problem.has_friction()));
-    // With Tresca's law there is nothing to be guessed. The scene gives the
-    // largest tangential stress, which times $m_p$ is the bound in (6.17). It
-    // acts at all nodes of $\Gamma_S$, at open ones, too.
+    // Tresca's law gives the bounds, at open nodes, too.
     if (tresca)
       for (unsigned int p = 0; p < contact_boundary->size(); ++p)
         state->set_normal_force(
@@ -551,21 +668,39 @@ namespace StepFriction3d
           (*contact_boundary)[p].measure *
             scene.friction_bound()->value((*contact_boundary)[p].point));
 
-    // What the constructor does is done once per mesh, so that we count it as
-    // setup. The iteration stops when the increment over a cycle, in the energy
-    // norm and relative to $u$, is at most the inner tolerance; the outer
-    // tolerance is about $\tau$ in Algorithm 2. Increments prove little, for a
-    // method that stalls has small ones as well. So the solver then computes
-    // $f-Au$ from scratch and with it the <i>certificate</i>: by how much any
-    // node violates equilibrium, non-penetration, the sign of the normal force,
-    // complementarity, the friction cone, or the direction of slip, forces
-    // relative to the largest nodal force and lengths to the largest
-    // displacement or gap. Without a small certificate
-    // <code>report.converged</code> is false.
+    // What is needed once per mesh is computed here, and nearly all memory is
+    // in place then. It goes into one matrix of $3\times3$ blocks on the leaf
+    // mesh; the inverses of its diagonal blocks, one block per node; the level
+    // matrices, in the same format and usually with fewer rows in all;
+    // projectors, $\omega''$ and local problems with their eigenbases, at
+    // contact nodes only; and about a dozen vectors of three numbers per node,
+    // four of which belong to the recombination. What is due to contact and
+    // friction is a small part of all this.
     CoulombSolver<dim> solver(
       dof_handler, hierarchy, problem, parameters.solver);
     setup_seconds += timer.wall_time();
 
+    // In this call the time is spent, most of it in sweeps over the leaf mesh,
+    // which read 27 blocks per node. To relax a contact node is not much dearer
+    // than to relax any other. For both, a row of the matrix is multiplied with
+    // $u$, and that product gives the normal force $\tau(p)$ of the
+    // intermediate iterate along with the force $b$. With Algorithm 3 the bound
+    // is taken from there and kept during the local problem: there is no inner
+    // iteration for the local law of Coulomb. The frame, the Schur complement
+    // and both eigenbases, that with the obstacle and that without, depend on
+    // the diagonal block only and are computed once per mesh. What is left are
+    // at most two scalar equations and some rotations. And contact nodes are
+    // few, a surface in a body.
+    //
+    // The levels below are cheaper than in two dimensions: there is less than
+    // one refined cell for seven active ones. The coarsest matrix has more
+    // unknowns, and its factors fill in; but it is factorised anew only when it
+    // has changed.
+    //
+    // The call returns with the certificate. Two of its six numbers are about
+    // vectors now: the tangential force must be inside a cone with a circular
+    // section, and where a node slips, must be exactly opposite to the slip, in
+    // direction as well as in size.
     timer.restart();
     report =
       solver.solve(displacement,
@@ -575,12 +710,9 @@ namespace StepFriction3d
                    });
     solve_seconds = timer.wall_time();
 
-    // The iteration has not touched the values at hanging nodes, which we now
-    // interpolate. The contact tractions are $R(p)/m_p=-r(p)/m_p$ with $r=f-Au$
-    // the residual, at nodes where the state says that something is
-    // transferred, and exactly zero elsewhere; what rounding leaves of $r$ at
-    // open nodes must not look like a stress. Note that this is not
-    // $\sigma(u_h)n$, which jumps from cell to cell and is less accurate.
+    // Hanging nodes get their displacements, and those on the contact boundary
+    // also their tractions: they have no force, but the stress is interpolated
+    // like any other field.
     hanging_node_constraints.distribute(displacement);
     displacement.update_ghost_values();
     tractions = contact_tractions(
@@ -593,14 +725,13 @@ namespace StepFriction3d
 
   // @sect4{ContactProblem::estimate_error}
 
-  // On the contact boundary the estimator compares the stress of the finite
-  // element solution with the contact tractions, which are known much better;
-  // elsewhere it is the usual residual estimator of elasticity, with residuals
-  // in the cells, jumps of the stress across faces, and the mismatch to given
-  // tractions. For Coulomb friction this is a guide and not a theorem: the
-  // proofs that we rely on are for contact without friction. Between the nodes
-  // the laws of contact hold only approximately; what is missing there is
-  // estimated as well.
+  // The residual estimator of step-friction-2d. On the contact boundary it
+  // works with normals and gaps as fields, interpolated from the contact nodes,
+  // at hanging nodes from their masters. What it finds between the nodes, a
+  // distance under pressure or a missing work of friction, is where the laws
+  // that hold at nodes only leave their trace. That includes friction which is
+  // not opposite to the slip: between nodes whose directions of slip differ, it
+  // cannot be so everywhere.
   template <int dim>
   ErrorEstimate
   ContactProblem<dim>::estimate_error() const
@@ -619,30 +750,36 @@ namespace StepFriction3d
 
   // @sect4{ContactProblem::mark_cells}
 
-  // The estimator knows where the error in the energy norm comes from. Whoever
-  // is after the contact stresses themselves may want more: a contact zone that
-  // is resolved equally well all over, which is what the table of the thesis
-  // has.
+  // Marking is the same, but in scenes like <code>cylinder</code> it meets the
+  // singularities at the ends of the contact zone, where prescribed
+  // displacements and obstacle contradict each other. A singularity is no
+  // reason for concern as such; local refinement is there for resolving them.
+  // This one is different. As the solution has infinite energy there, each
+  // halving of the cells brings about as much new energy as the one before, and
+  // the estimator is right to find the largest errors always in the same place.
+  // By the rule of the maximum it marks the four spots and next to nothing
+  // else, for ever. A lower threshold only delays this, since what is wrong is
+  // in the data and not in the mesh.
+  //
+  // With <code>Refinement/Contact zone = true</code> all cells in contact are
+  // refined besides. The zone keeps one width of the mesh all over and is
+  // resolved, however fine the spots at its ends get. It is a surface, so that
+  // every level has about four times as many nodes in contact as the one
+  // before, and cells near the surface soon make up most of the mesh.
   template <int dim>
   bool
   ContactProblem<dim>::mark_cells(const ErrorEstimate &estimate)
   {
     if (parameters.refinement.strategy == RefinementStrategy::uniform)
       {
+        // Eight times as many cells.
         triangulation.set_all_refine_flags();
         return true;
       }
-    // All cells are marked whose indicator is at least a given fraction of the
-    // largest. There is no coarsening, so that interpolation to the next mesh
-    // loses nothing. If there is no error at all, nothing is marked and the run
-    // is complete.
+    // There is no coarsening, and nothing is marked if there is no error.
     const bool any_marked = mark_by_maximum(triangulation,
                                             estimate.cell_errors,
                                             parameters.refinement.marking) > 0;
-    // Optionally, every cell at the boundary with a vertex in contact is
-    // refined besides. The zone of contact then has the same mesh width all
-    // over, at a price: this is not optimal for the energy, and the mesh gets
-    // coarse so quickly with depth that the pressure carries a slight ripple.
     if (parameters.refinement.contact_zone)
       mark_contact_zone(
         dof_handler, *nodal_constraints, *contact_boundary, *state);
@@ -653,16 +790,12 @@ namespace StepFriction3d
 
   // @sect4{ContactProblem::refine_mesh}
 
-  // Nested iteration: the displacement and the contact tractions are
-  // interpolated to the refined mesh as they are. Tractions rather than nodal
-  // forces, because a force belongs to a mesh, and halves when the mesh is
-  // refined. The flags of contact and stick are not transferred: a node that
-  // has come to lie at the obstacle or inside starts in contact, and the first
-  // sweep decides anew.
-  //
-  // The guess is worth having: with it Algorithm 2 starts with a small first
-  // change of the forces, and the number of cycles does not grow with the
-  // level.
+  // Nested iteration: displacement and tractions are interpolated. That we
+  // carry over tractions and not forces is even more important than in two
+  // dimensions, for a force is a stress times an area and falls to a quarter if
+  // the mesh is refined. Local refinement changes measures abruptly, too: where
+  // a hanging node appears, its masters get a share of it, and where it becomes
+  // a node of its own, they lose it. Stresses know nothing of this.
   template <int dim>
   void
   ContactProblem<dim>::refine_mesh()
@@ -679,10 +812,8 @@ namespace StepFriction3d
     setup_system();
     setup_seconds = timer.wall_time();
 
-    // Everything about the old mesh has been replaced; only the two vectors
-    // arrive. They are not admissible yet, since new nodes on $\Gamma_S$ have
-    // gaps of their own, and prescribed values need not be linear between old
-    // nodes. <code>solve()</code> takes care of that.
+    // The two vectors arrive on the new mesh; <code>solve()</code> makes them
+    // admissible.
     displacement.reinit(nodal_constraints->partitioner());
     tractions.reinit(nodal_constraints->partitioner());
     std::vector<VectorType *> new_vectors = {&displacement, &tractions};
@@ -693,30 +824,21 @@ namespace StepFriction3d
 
   // @sect4{ContactProblem::record_level}
 
-  // What is known at the end of a level: for the table on the console, for
-  // <code>history.h5</code> which scripts can read, and for ParaView. A level
-  // that has not converged is recorded as well, for one wants to see what it
-  // looks like.
-  //
-  // <code>make_level_records()</code> turns nodal forces into pressures, sums
-  // of forces and half-widths of zones. Some of what it finds deserves a word.
-  // - The numbers of contact and sticky nodes count flags of the state, and are
-  //   what table 6.1 of the thesis lists.
-  // - The energy is $\hat J(u)$ of (6.8) at the final $\tau$. As $\tau$ and the
-  //   shape of the body differ from mesh to mesh, it need not fall with the
-  //   level. Within one Tresca problem it must never rise from cycle to cycle.
-  //   With Algorithm 3 it may, as $\tau$ and with it the functional changes.
-  // - Of each cycle we keep the relative increment, the energy of the smoothed
-  //   iterate, the step length of the coarse correction (which may exceed one),
-  //   the number of components that truncation has taken from coarse functions,
-  //   and the norm of the truncated residual. Once phases have settled, the
-  //   number of truncated components is constant, and the iteration is linear.
-  // - <code>rho_tau</code> exists in the two versions that the introduction
-  //   mentions, and is zero for Algorithm 3; <code>certificate</code> is the
-  //   largest of its six violations.
-  //
-  // The history is rewritten as a whole after each level and put in place by
-  // renaming. A run that is killed leaves all levels that were complete.
+  // The records are those of two dimensions. Some of them have to be read with
+  // care:
+  // - The counts of contact and sticky nodes, listed in table 6.2 of the thesis
+  //   for another mesh, count nodes of a mesh and not areas. Hanging nodes are
+  //   not counted. If the mesh is refined in part of the zone, ratios mean
+  //   little.
+  // - The half-widths of the zones of contact and stick are radii of circles of
+  //   the same area. For two strips along two rods they are not more than a
+  //   number that should converge.
+  // - The tangential force is the norm of a sum of vectors. In symmetric scenes
+  //   they cancel.
+  // - When the number of truncated components is constant, phases have settled.
+  //   In two dimensions the iteration is linear from there on; here $\omega''$
+  //   goes on changing, less and less.
+  // - In scenes with contradictory data the energy grows with the level.
   template <int dim>
   void
   ContactProblem<dim>::record_level(const unsigned int   level,
@@ -746,10 +868,9 @@ namespace StepFriction3d
                          estimate.cell_errors.size() > 0 ? &estimate.cell_errors
                                                          : nullptr);
 
-    // Some scenes know their solution. Orders of convergence make sense if the
-    // width of the mesh is halved everywhere; a patch test, whose solution is
-    // linear, has none, for there a method without penalty is exact up to
-    // rounding and the tolerance of the solver.
+    // The patch test <code>stick-slip</code> knows its solution. It is linear,
+    // for a shear in any direction, and so the error is that of rounding and of
+    // the solver's tolerance, whatever the mesh.
     if (scene.exact_displacement() != nullptr)
       {
         const ExactError error =
@@ -769,14 +890,8 @@ namespace StepFriction3d
 
   // @sect4{ContactProblem::run}
 
-  // The loop over levels. It ends when the mesh is fine enough, or when a level
-  // could not be solved: then the certificate says by how much its last iterate
-  // violates which law, and the program must not pretend otherwise.
-  //
-  // Before it starts, we compare the coefficient of friction with Eck's bound.
-  // Above it we do not give up, since in practice many scenes have a solution
-  // there. But this is not known, and if there are several, another algorithm
-  // or another initial guess may legitimately lead elsewhere.
+  // The loop over levels. Eck's bound is another one in three dimensions,
+  // $\sqrt{1-\frac1{4(1-\nu)}}$, and smaller for positive Poisson ratios.
   template <int dim>
   bool
   ContactProblem<dim>::run()
@@ -795,8 +910,7 @@ namespace StepFriction3d
         console.warning(text.str());
       }
 
-    // The first guess is the undeformed body without any forces; on a coarse
-    // mesh that is good enough.
+    // We start from the undeformed body without forces.
     make_coarse_mesh();
     Timer timer;
     setup_system();
@@ -811,9 +925,9 @@ namespace StepFriction3d
         setup_seconds += timer.wall_time();
         solve(level);
 
-        // The estimate is needed for adaptive refinement, except on the last
-        // level. By default it is computed there, too, because one wants to
-        // know the error of what one has got.
+        // A level more may mean eight times the unknowns. The limit on their
+        // number stops refinement, not the solution on a mesh that has become
+        // larger than expected.
         const bool last = level >= parameters.refinement.levels ||
           dof_handler.n_dofs() >= parameters.refinement.maximum_dofs;
         const bool adaptive =
@@ -824,10 +938,7 @@ namespace StepFriction3d
 
         record_level(level, estimate);
 
-        // A level without a certified solution is the end: what is wrong on
-        // this mesh would only be interpolated to the next one. The certificate
-        // tells which law is violated. If $\mathcal F$ is large, Algorithm 2
-        // with <code>Outer damping</code> below one may still converge.
+        // A level without a certificate ends the run.
         if (!report.converged)
           {
             console.note(
@@ -847,9 +958,8 @@ namespace StepFriction3d
 
 // @sect3{The <code>main</code> function}
 
-// A scene file, then entries of it that are to be different this time.
-// Whatever is wrong with them is said in one sentence, and the exit status is
-// part of the result; see <code>run_program()</code>.
+// A scene file, and entries of it that are to be different. The class is
+// instantiated for three dimensions only.
 int
 main(int argc, char *argv[])
 {
