@@ -114,6 +114,43 @@ namespace
 
 
 
+  // A flat boundary above a rod that crosses it: normals straight towards the
+  // axis of the rod. That they differ from the boundary's own does not change
+  // the measures.
+  void
+  test_rod()
+  {
+    Random                 random(3);
+    const RandomProblem<3> problem(
+      curved_parameters<3>(FrictionLaw::none, 0.), 3, .3, random);
+    const Tensor<1, 3> axis    = Point<3>(1., 2., 0.) / std::sqrt(5.);
+    double             normals = 0, gaps = 0, flattest = 1., area = 0;
+    for (const ContactNode<3> &p : problem.contact())
+      {
+        Tensor<1, 3> to_axis = Point<3>(.75, .5, -3.) - p.point;
+        to_axis -= (to_axis * axis) * axis;
+        normals =
+          std::max(normals, (p.normal() - to_axis / to_axis.norm()).norm());
+        gaps     = std::max(gaps, std::abs(p.gap - (to_axis.norm() - 3.)));
+        flattest = std::min(flattest, -p.normal()[2]);
+        area += p.measure;
+      }
+    const unsigned int n_hanging =
+      problem.n_hanging_at_contact([](const unsigned int) { return true; });
+    std::cout << "rod, " << problem.contact().size() << " contact nodes, "
+              << n_hanging << " hanging nodes on the contact boundary"
+              << std::endl;
+    check(n_hanging > 0, "nodes hang there");
+    check(flattest < .99, "normals in all directions");
+    check_below(normals, 1e-14, "normals towards the axis");
+    check_below(gaps, 1e-14, "gaps along the normal");
+    check_below(frame_error(problem.contact()), 1e-14, "frames");
+    check_below(
+      std::abs(area - 1.5), 1e-13, "measures sum up to the boundary's");
+  }
+
+
+
   // Measures on the bottom of a block, compared with the integrals of the
   // condensed nodal functions.
   template <int dim>
@@ -237,6 +274,7 @@ main(int argc, char **argv)
 {
   Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_half_disc();
+  test_rod();
   test_measures<2>(3, .5);
   test_measures<3>(3, .3);
 

@@ -10,6 +10,10 @@
 // and one after, all eigenvalues are positive, and the smallest one bounds the
 // contraction from below.
 //
+// With two levels only, the cycle is but the direct solution on the coarser
+// one. Then it is a projection, whose eigenvalues are zero and one and nothing
+// in between, and the energy falls by exactly what was predicted.
+//
 // With bounds the cycle is not linear any more, but its correction stays within
 // them, its energy is not positive, and where they are infinite it is the same
 // cycle as without.
@@ -29,7 +33,6 @@ using namespace Tests;
 namespace
 {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  constexpr int    dim      = 2;
 
   const char *
   name(const Cycle cycle)
@@ -40,15 +43,16 @@ namespace
 
 
   // An orthonormal basis of the free subspace of all nodes.
+  template <int dim>
   Eigen::MatrixXd
   free_basis(const Truncation<dim> &truncation, const unsigned int n_nodes)
   {
     std::vector<Eigen::VectorXd> columns;
     for (unsigned int i = 0; i < n_nodes; ++i)
       {
-        const Eigen::Map<const Eigen::Matrix2d> T(
-          truncation.projector(i).data());
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(T);
+        using Matrix = Eigen::Matrix<double, dim, dim>;
+        const Eigen::Map<const Matrix> T(truncation.projector(i).data());
+        const Eigen::SelfAdjointEigenSolver<Matrix> eigen(T);
         for (unsigned int d = 0; d < dim; ++d)
           if (eigen.eigenvalues()(d) > .5)
             {
@@ -76,6 +80,7 @@ namespace
 
 
   // Truncations of different kinds, from what is common to what is rare.
+  template <int dim>
   Truncation<dim>
   make_truncation(const RandomProblem<dim> &problem,
                   const std::string        &kind,
@@ -101,22 +106,42 @@ namespace
             const double x = cell->vertex(v)[0];
             if (!constraints.is_free(node))
               continue;
-            if (x < .8)
+            if (x < (dim == 2 ? .8 : .5))
               truncation.set(node, zero_block<dim>(), zero_block<dim>());
             else if (x > 1.2)
-              truncation.set(
-                node, outer<dim>({{.6, .8}}, {{.6, .8}}), zero_block<dim>());
+              {
+                const NodeValue<2> in_plane = {{.6, .8}};
+                NodeValue<dim>     d        = {};
+                d[0]                        = in_plane[0];
+                d[1]                        = in_plane[1];
+                truncation.set(node, outer<dim>(d, d), zero_block<dim>());
+              }
           }
     return truncation;
   }
 
 
 
+  template <int dim>
+  unsigned int
+  n_hanging_at_curvature(const RandomProblem<dim> &problem,
+                         const Truncation<dim>    &truncation)
+  {
+    return problem.n_hanging_at_contact([&](const unsigned int p) {
+      const unsigned int node = problem.contact()[p].node;
+      return trace<dim>(truncation.curvature(node).data()) > 0 &&
+        truncation.projector(node) != identity_block<dim>();
+    });
+  }
+
+
+
+  template <int dim>
   struct Setup
   {
     Setup(const RandomProblem<dim> &problem, const Truncation<dim> &truncation)
       : truncation(truncation)
-      , Z(free_basis(truncation, problem.constraints().n_nodes()))
+      , Z(free_basis<dim>(truncation, problem.constraints().n_nodes()))
     {
       const auto T_omega =
         to_dense(truncation, problem.constraints().n_nodes());
@@ -131,6 +156,7 @@ namespace
 
 
   // Z^T C Z, column by column.
+  template <int dim>
   Eigen::MatrixXd
   to_dense_operator(CoarseCycle<dim>         &cycle,
                     const RandomProblem<dim> &problem,
@@ -150,23 +176,31 @@ namespace
 
 
 
+  template <int dim>
   void
   test_linear(const unsigned int seed)
   {
     Random                   random(seed);
     const RandomProblem<dim> problem(
-      block_parameters<dim>(FrictionLaw::coulomb, .4), 4, .45, random);
+      block_parameters<dim>(FrictionLaw::coulomb, .4),
+      dim == 2 ? 4 : 2,
+      dim == 2 ? .45 : .5,
+      random);
     for (const std::string kind :
          {"none", "random at contact", "all stick", "large patches"})
       {
         const Truncation<dim> truncation =
-          make_truncation(problem, kind, random);
-        const Setup setup(problem, truncation);
-        std::cout << "truncation: " << kind << "; "
+          make_truncation<dim>(problem, kind, random);
+        const Setup<dim> setup(problem, truncation);
+        std::cout << dim << "D, truncation: " << kind << "; "
                   << problem.constraints().n_nodes() << " nodes, "
                   << problem.hierarchy().n_levels() << " levels, "
                   << problem.n_hanging_with_truncated_master(truncation)
                   << " hanging nodes have a truncated master" << std::endl;
+        if (kind == "random at contact")
+          check((n_hanging_at_curvature<dim>(problem, truncation) > 0) ==
+                  (dim == 3),
+                "in 3D nodes hang at contact nodes with a second derivative");
 
         // The leaf relaxation, one forward sweep: L is the lower triangle of
         // the matrix, node by node.
@@ -242,23 +276,107 @@ namespace
 
 
 
+  // The leaf level and one below it.
+  template <int dim>
+  void
+  test_two_levels(const unsigned int seed)
+  {
+    Random                   random(seed);
+    const RandomProblem<dim> problem(
+      block_parameters<dim>(FrictionLaw::coulomb, .4), 1, .6, random);
+    const Truncation<dim> truncation =
+      make_truncation<dim>(problem, "random at contact", random);
+    const Setup<dim> setup(problem, truncation);
+    CoarseCycle<dim> cycle(problem.discretization->dof_handler,
+                           problem.matrix(),
+                           problem.hierarchy(),
+                           problem.constraints(),
+                           Cycle::V,
+                           1);
+    cycle.update(truncation);
+    const Eigen::MatrixXd C = to_dense_operator(cycle, problem, setup.Z);
+    const Eigen::MatrixXd factor =
+      Eigen::LLT<Eigen::MatrixXd>(setup.reduced).matrixL();
+    const Eigen::VectorXd spectrum =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
+        factor.transpose() * C * factor, Eigen::EigenvaluesOnly)
+        .eigenvalues();
+    double deviation = 0;
+    for (const double value : spectrum)
+      deviation =
+        std::max(deviation, std::min(std::abs(value), std::abs(value - 1)));
+    double energy = 0;
+    for (unsigned int sample = 0; sample < 10; ++sample)
+      {
+        VectorType r = problem.leaf_vector(), v(r);
+        for (auto &value : r)
+          value = random(-1., 1.);
+        truncation.apply(r.begin());
+        cycle.apply(v, r);
+        const Eigen::VectorXd x        = to_eigen(v);
+        const double          decrease = r * v - .5 * x.dot(setup.A * x);
+        energy = std::max(energy, std::abs(decrease / (.5 * (r * v)) - 1));
+      }
+    std::cout << dim << "D, " << problem.hierarchy().n_levels() << " levels, "
+              << problem.n_hanging_with_truncated_master(truncation)
+              << " hanging nodes have a truncated master" << std::endl;
+    check_below(deviation, 1e-10, "eigenvalues are zero or one");
+    check((spectrum.array() > .5).any() && (spectrum.array() < .5).any(),
+          "and both occur");
+    check_below(energy, 1e-10, "the energy falls by half of r.v");
+  }
+
+
+
+  // One level, and all that could move sticks.
+  template <int dim>
+  void
+  test_nothing_free()
+  {
+    Random                   random(1);
+    const RandomProblem<dim> problem(
+      block_parameters<dim>(FrictionLaw::coulomb, .4), 0, 0., random);
+    Truncation<dim> truncation(problem.constraints());
+    for (unsigned int i = 0; i < problem.constraints().n_nodes(); ++i)
+      truncation.set(i, zero_block<dim>(), zero_block<dim>());
+    CoarseCycle<dim> cycle(problem.discretization->dof_handler,
+                           problem.matrix(),
+                           problem.hierarchy(),
+                           problem.constraints(),
+                           Cycle::V,
+                           1);
+    cycle.update(truncation);
+    VectorType r = problem.leaf_vector(), v(r);
+    v            = 17.;
+    cycle.apply(v, r);
+    check_below(v.linfty_norm(),
+                0.,
+                std::to_string(dim) + "D, nothing moves where all sticks");
+  }
+
+
+
+  template <int dim>
   void
   test_bounds(const unsigned int seed)
   {
     Random                   random(seed);
     const RandomProblem<dim> problem(
-      block_parameters<dim>(FrictionLaw::coulomb, .4), 4, .45, random);
+      block_parameters<dim>(FrictionLaw::coulomb, .4),
+      dim == 2 ? 4 : 2,
+      dim == 2 ? .45 : .5,
+      random);
     const auto &constraints = problem.constraints();
     for (const std::string kind :
          {"none", "random at contact", "all stick", "large patches"})
       {
         const Truncation<dim> truncation =
-          make_truncation(problem, kind, random);
+          make_truncation<dim>(problem, kind, random);
         const Eigen::SparseMatrix<double> A =
           (to_dense(problem.matrix()) +
            to_dense(truncation, constraints.n_nodes()).second)
             .sparseView();
-        std::cout << "bounds, truncation: " << kind << std::endl;
+        std::cout << dim << "D, bounds, truncation: " << kind << std::endl;
 
         for (const Cycle type : {Cycle::V, Cycle::W})
           {
@@ -365,6 +483,12 @@ int
 main(int argc, char **argv)
 {
   Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  test_linear(1);
-  test_bounds(2);
+  test_linear<2>(1);
+  test_linear<3>(1);
+  test_two_levels<2>(1);
+  test_two_levels<3>(1);
+  test_nothing_free<2>();
+  test_nothing_free<3>();
+  test_bounds<2>(2);
+  test_bounds<3>(2);
 }

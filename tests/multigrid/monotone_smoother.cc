@@ -9,6 +9,14 @@
 // random admissible starts, with friction and without, with bounds that hold
 // nodes above the obstacle, and with a tangent prescribed. What many sweeps
 // converge to satisfies the law of contact and friction, and stays.
+//
+// In 3D nodes hang on the contact boundary. They have no part in any of this:
+// whatever value is written there, it is not read, nor is it changed. And the
+// local problems can be solved in two ways, which must not make a difference.
+//
+// Without contact a sweep is linear. Then a backward sweep is the adjoint of
+// the forward one in the energy product, which is to say that it takes the
+// nodes in the opposite order, contact nodes and all.
 
 #include <common/contact/certificate.h>
 #include <common/multigrid/monotone_smoother.h>
@@ -23,9 +31,9 @@ using namespace Tests;
 
 namespace
 {
-  constexpr int    dim      = 2;
   constexpr double infinity = std::numeric_limits<double>::infinity();
 
+  template <int dim>
   VectorType
   random_start(const RandomProblem<dim> &problem, Random &random)
   {
@@ -53,6 +61,7 @@ namespace
 
 
   // Random normal forces at some of the nodes, whether they touch or not.
+  template <int dim>
   ContactState
   random_state(const RandomProblem<dim> &problem,
                const double              friction,
@@ -61,13 +70,14 @@ namespace
     ContactState state(problem.contact().size(), friction > 0);
     for (unsigned int p = 0; p < state.size(); ++p)
       if (random.chance(.7))
-        state.set_normal_force(p, random(0., .02));
+        state.set_normal_force(p, random(0., dim == 2 ? .02 : .002));
     return state;
   }
 
 
 
   // All nodes but one held at where they are: the relaxation of that node.
+  template <int dim>
   void
   test_single_nodes(const RandomProblem<dim> &problem,
                     const double              friction,
@@ -75,8 +85,8 @@ namespace
   {
     const auto                 &disc = *problem.discretization;
     const TrescaFunctional<dim> functional(disc.problem());
-    VectorType                  u     = random_start(problem, random);
-    ContactState                state = random_state(problem, friction, random);
+    VectorType                  u = random_start<dim>(problem, random);
+    ContactState state = random_state<dim>(problem, friction, random);
 
     double       increase = 0, better = 0, penetration = -infinity, moved = 0;
     unsigned int n_lowered = 0;
@@ -141,6 +151,7 @@ namespace
 
 
 
+  template <int dim>
   void
   test_sweeps(const RandomProblem<dim> &problem,
               const double              friction,
@@ -156,8 +167,8 @@ namespace
     unsigned int n_open_sticks = 0;
     for (unsigned int start = 0; start < 5; ++start)
       {
-        VectorType   u     = random_start(problem, random);
-        ContactState state = random_state(problem, friction, random);
+        VectorType   u     = random_start<dim>(problem, random);
+        ContactState state = random_state<dim>(problem, friction, random);
         double       last  = functional.energy(u, state);
         for (unsigned int sweep = 0; sweep < 20; ++sweep)
           {
@@ -180,10 +191,12 @@ namespace
               {
                 const auto  &node = problem.contact()[p];
                 const double room = node.gap - normal_component(node, u);
-                const double u_t  = tangential_components<dim>(node, u)[0];
-                flags_right       = flags_right &&
+                double       slip = 0;
+                for (const double u_t : tangential_components<dim>(node, u))
+                  slip = std::max(slip, std::abs(u_t));
+                flags_right = flags_right &&
                   (!state.in_contact(p) || room < 1e-14) &&
-                  (!state.sticks(p) || std::abs(u_t) < 1e-15) &&
+                  (!state.sticks(p) || slip < 1e-15) &&
                   (!state.sticks(p) || state.normal_force(p) > 0);
                 n_open_sticks += state.sticks(p) && !state.in_contact(p);
               }
@@ -216,6 +229,147 @@ namespace
 
 
 
+  template <int dim>
+  double
+  largest_difference(VectorType u, const VectorType &v)
+  {
+    u -= v;
+    return u.linfty_norm();
+  }
+
+
+
+  // What is written at hanging nodes, and how local problems are solved, makes
+  // no difference.
+  template <int dim>
+  void
+  test_hanging_nodes(const RandomProblem<dim> &problem,
+                     const double              friction,
+                     Random                   &random)
+  {
+    const auto                 &disc        = *problem.discretization;
+    const auto                 &constraints = problem.constraints();
+    const MonotoneSmoother<dim> smoother(
+      problem.matrix(), constraints, problem.contact(), friction);
+    const MonotoneSmoother<dim> uzawa(problem.matrix(),
+                                      constraints,
+                                      problem.contact(),
+                                      friction,
+                                      LocalSolver::uzawa);
+    double                      difference = 0, disagreement = 0;
+    bool                        untouched = true, same_states = true;
+    unsigned int                n_hanging[2] = {0, 0};
+    for (unsigned int start = 0; start < 3; ++start)
+      {
+        VectorType u = random_start<dim>(problem, random), v(u), w(u);
+        for (unsigned int i = 0; i < constraints.n_nodes(); ++i)
+          if (constraints.is_hanging(i))
+            for (unsigned int d = 0; d < dim; ++d)
+              v.local_element(dim * i + d) = random(-1e3, 1e3);
+        const VectorType written(v);
+        ContactState     state = random_state<dim>(problem, friction, random);
+        ContactState     state_v(state), state_w(state);
+        for (unsigned int sweep = 0; sweep < 6; ++sweep)
+          {
+            const bool coulomb   = start == 2 && sweep > 2;
+            const bool backwards = sweep % 2;
+            smoother.sweep(u, disc.forces, state, coulomb, backwards);
+            smoother.sweep(v, disc.forces, state_v, coulomb, backwards);
+            uzawa.sweep(w, disc.forces, state_w, coulomb, backwards);
+            disagreement = std::max(
+              disagreement, largest_difference<dim>(u, w) / u.linfty_norm());
+            for (unsigned int p = 0; p < state.size(); ++p)
+              for (const ContactState *other : {&state_v, &state_w})
+                same_states = same_states &&
+                  state.in_contact(p) == other->in_contact(p) &&
+                  state.sticks(p) == other->sticks(p);
+          }
+        for (unsigned int i = 0; i < constraints.n_nodes(); ++i)
+          for (unsigned int d = dim * i; d < dim * (i + 1); ++d)
+            if (constraints.is_hanging(i))
+              untouched =
+                untouched && v.local_element(d) == written.local_element(d);
+            else
+              difference = std::max(
+                difference, std::abs(u.local_element(d) - v.local_element(d)));
+        for (const bool sticking : {false, true})
+          n_hanging[sticking] +=
+            problem.n_hanging_at_contact([&](const unsigned int p) {
+              return state.in_contact(p) && state.sticks(p) == sticking;
+            });
+      }
+    check((n_hanging[0] + n_hanging[1] > 0) == (dim == 3),
+          dim == 2 ? "in 2D no node hangs on the contact boundary"
+                   : "nodes hang at nodes in contact");
+    if (dim == 3)
+      std::cout << "        some of which " << (n_hanging[0] > 0 ? "slide" : "")
+                << (n_hanging[1] > 0 ? ", others stick" : "") << std::endl;
+    check_below(difference, 0., "values at hanging nodes are not read");
+    check(untouched, "nor are they changed");
+    check_below(disagreement,
+                dim == 2 ? 0. : 1e-10,
+                "both solvers of local problems agree");
+    check(same_states, "and so do the states");
+  }
+
+
+
+  // The obstacle is out of reach: the difference of two iterates is mapped by
+  // a linear operator.
+  template <int dim>
+  void
+  test_adjoint(Parameters parameters, Random &random)
+  {
+    for (double &x : parameters.obstacle.point)
+      x -= 10.;
+    for (auto &center : parameters.obstacle.centers)
+      center.back() -= 10.;
+    const RandomProblem<dim>    problem(parameters, 2, .5, random);
+    const auto                 &disc = *problem.discretization;
+    const MonotoneSmoother<dim> smoother(
+      problem.matrix(), problem.constraints(), problem.contact(), 0.);
+    ContactState state(problem.contact().size(), false);
+    const auto   product = [&](const VectorType &a, const VectorType &b) {
+      VectorType Ab(b);
+      problem.matrix().vmult(Ab.begin(), b.begin());
+      return a * Ab;
+    };
+    const auto difference = [&]() {
+      VectorType x = random_start<dim>(problem, random);
+      x -= random_start<dim>(problem, random);
+      return x;
+    };
+    const VectorType base   = random_start<dim>(problem, random);
+    const auto       linear = [&](const VectorType &x, const bool backwards) {
+      VectorType u(base), v(base);
+      u += x;
+      smoother.sweep(u, disc.forces, state, false, backwards);
+      smoother.sweep(v, disc.forces, state, false, backwards);
+      u -= v;
+      return u;
+    };
+    double deviation = 0, asymmetry = 0;
+    for (unsigned int sample = 0; sample < 5; ++sample)
+      {
+        const VectorType x = difference(), y = difference();
+        const VectorType forward = linear(y, false);
+        const double     size =
+          std::sqrt(product(x, x) * product(forward, forward));
+        deviation = std::max(
+          deviation,
+          std::abs(product(linear(x, true), y) - product(x, forward)) / size);
+        asymmetry = std::max(
+          asymmetry,
+          std::abs(product(linear(x, false), y) - product(x, forward)) / size);
+      }
+    check_below(deviation, 1e-12, "backwards is the reverse of forwards");
+    check(asymmetry > 1e-4 && state.n_contact() == 0,
+          "and not the same as forwards");
+  }
+
+
+
+  template <int dim>
   void
   test_fixed_point(const RandomProblem<dim> &problem,
                    const double              friction,
@@ -225,8 +379,8 @@ namespace
     const auto                 &disc = *problem.discretization;
     const MonotoneSmoother<dim> smoother(
       problem.matrix(), problem.constraints(), problem.contact(), friction);
-    VectorType   u     = random_start(problem, random);
-    ContactState state = random_state(problem, friction, random);
+    VectorType   u     = random_start<dim>(problem, random);
+    ContactState state = random_state<dim>(problem, friction, random);
     for (unsigned int sweep = 0; sweep < 2500; ++sweep)
       smoother.sweep(u, disc.forces, state, coulomb, sweep % 2);
 
@@ -235,9 +389,31 @@ namespace
     smoother.sweep(v, disc.forces, after, coulomb, false);
     smoother.sweep(v, disc.forces, after, coulomb, true);
     problem.matrix().residual(r.begin(), disc.forces.begin(), u.begin());
-    const Certificate certificate = make_certificate<dim>(
+    Certificate certificate = make_certificate<dim>(
       u, r, problem.constraints(), problem.contact(), state, friction, coulomb);
     v -= u;
+
+    // Sliding nodes once more: in 3D a part of the slip may be prescribed,
+    // which the certificate does not know of.
+    double direction = 0;
+    for (const auto &p : problem.contact())
+      if (dim == 3 && p.n_free_tangents < dim - 1)
+        certificate.slip = 0;
+    for (unsigned int p = 0; p < state.size(); ++p)
+      if (!state.sticks(p) && state.normal_force(p) > 0)
+        {
+          const auto u_T  = tangential_components<dim>(problem.contact()[p], u);
+          const auto r_T  = tangential_components<dim>(problem.contact()[p], r);
+          double     slip = 0;
+          for (const double u_t : u_T)
+            slip = std::hypot(slip, u_t);
+          for (unsigned int t = 0; t < problem.contact()[p].n_free_tangents;
+               ++t)
+            direction = std::max(
+              direction,
+              std::abs(r_T[t] -
+                       friction * state.normal_force(p) * u_T[t] / slip));
+        }
     bool same = state.n_contact() == after.n_contact() &&
       state.n_sticking() == after.n_sticking();
     const std::string law = friction == 0 ? "no friction"
@@ -247,24 +423,55 @@ namespace
                 1e-12,
                 law + ": a solution is a fixed point");
     check(same && state.n_contact() > 0, law + ": and so is its state");
+    check_below(direction, 1e-12, law + ": friction opposes the slip");
     check_below(certificate.largest(), 1e-9, law + ": and certified");
   }
 
 
 
+  template <int dim>
   void
   test(const Parameters &parameters, const std::string &what)
   {
     Random                   random(1);
     const RandomProblem<dim> problem(parameters, 2, .5, random);
     const double             friction = problem.scene.friction_coefficient();
-    std::cout << what << ", " << problem.contact().size() << " contact nodes, "
-              << problem.n_hanging() << " nodes hang" << std::endl;
-    test_single_nodes(problem, friction, random);
-    test_sweeps(problem, friction, random);
-    test_fixed_point(problem, friction, false, random);
+    std::cout << dim << "D, " << what << ", " << problem.contact().size()
+              << " contact nodes, " << problem.n_hanging() << " nodes hang"
+              << std::endl;
+    test_single_nodes<dim>(problem, friction, random);
+    test_sweeps<dim>(problem, friction, random);
+    test_hanging_nodes<dim>(problem, friction, random);
+    test_adjoint<dim>(parameters, random);
+    test_fixed_point<dim>(problem, friction, false, random);
     if (friction > 0)
-      test_fixed_point(problem, friction, true, random);
+      test_fixed_point<dim>(problem, friction, true, random);
+  }
+
+  template <int dim>
+  void
+  test_all()
+  {
+    // The obstacle leans a little, so that some nodes stay off it.
+    const auto leaning = [](const FrictionLaw law, const double friction) {
+      Parameters parameters = block_parameters<dim>(law, friction);
+      parameters.obstacle.normal =
+        std::vector<double>(dim, dim == 2 ? .03 : -.006);
+      parameters.obstacle.normal.back() = -1.;
+      return parameters;
+    };
+    test<dim>(leaning(FrictionLaw::none, 0.), "F=0");
+    test<dim>(leaning(FrictionLaw::coulomb, .4), "F=0.4");
+
+    Parameters               held = leaning(FrictionLaw::coulomb, .4);
+    std::vector<std::string> displacement(dim, "free");
+    displacement[0] = "0.001";
+    held.boundary_conditions.displacement.push_back({"0", displacement});
+    test<dim>(held, "F=0.4, a tangent prescribed");
+
+    // Normals in all directions.
+    test<dim>(curved_parameters<dim>(FrictionLaw::coulomb, .4),
+              "curved, F=0.4");
   }
 } // namespace
 
@@ -272,30 +479,6 @@ int
 main(int argc, char **argv)
 {
   Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-
-  // The obstacle leans a little, so that some nodes stay off it.
-  const auto leaning = [](const FrictionLaw law, const double friction) {
-    Parameters parameters      = block_parameters<dim>(law, friction);
-    parameters.obstacle.normal = {.03, -1.};
-    return parameters;
-  };
-  test(leaning(FrictionLaw::none, 0.), "F=0");
-  test(leaning(FrictionLaw::coulomb, .4), "F=0.4");
-
-  Parameters held = leaning(FrictionLaw::coulomb, .4);
-  held.boundary_conditions.displacement.push_back({"0", {"0.001", "free"}});
-  test(held, "F=0.4, a tangent prescribed");
-
-  // Normals in all directions.
-  Parameters disc;
-  disc.scene.geometry               = GeometryKind::half_disc;
-  disc.scene.radius                 = 1.;
-  disc.obstacle.kind                = ObstacleKind::plane;
-  disc.obstacle.point               = {0., -1.};
-  disc.obstacle.normal              = {0., -1.};
-  disc.contact.boundary_id          = 0;
-  disc.contact.friction_law         = FrictionLaw::coulomb;
-  disc.contact.friction_coefficient = .4;
-  disc.boundary_conditions.displacement.push_back({"1", {"0.05", "-0.2"}});
-  test(disc, "half disc, F=0.4");
+  test_all<2>();
+  test_all<3>();
 }

@@ -1,6 +1,11 @@
 // Algorithms 2 and 3 find the same solution; a coefficient of zero is the same
 // as no friction, and costs nothing; the initial guess of a finer mesh is
 // admissible and a good one.
+//
+// In three dimensions there is more to choose from. On a mesh with nodes that
+// hang on the contact boundary, below which there is a rod, so that normals
+// point in all directions, everything that can be chosen about the solver leads
+// to the same solution.
 
 #include <common/solvers/tresca_functional.h>
 
@@ -9,6 +14,7 @@
 
 #include "../support/check_below.h"
 #include "../support/nested_iteration.h"
+#include "../support/random_problem.h"
 
 using namespace Tests;
 
@@ -114,6 +120,77 @@ namespace
     check(same, "the states are the same");
     check_below(outer, 7, "Algorithm 2 takes at most 7 outer iterations");
     check(contraction, "rho_tau, both ways");
+  }
+
+
+
+  void
+  compare_in_3d()
+  {
+    Random                 random(3);
+    const RandomProblem<3> fixture(
+      curved_parameters<3>(FrictionLaw::coulomb, .4), 3, .3, random);
+    const Discretization<3> &d = *fixture.discretization;
+
+    SolverSettings standard;
+    standard.inner_tolerance = 1e-10;
+    standard.outer_tolerance = 1e-9;
+    std::vector<std::pair<std::string, SolverSettings>> choices;
+    const auto add = [&](const std::string &name, const auto &change) {
+      choices.emplace_back(name, standard);
+      change(choices.back().second);
+    };
+    add("Algorithm 3", [](SolverSettings &) {});
+    add("Algorithm 2",
+        [](SolverSettings &s) { s.algorithm = Algorithm::fixed_point; });
+    add("Uzawa's method in the local problems",
+        [](SolverSettings &s) { s.local_solver = LocalSolver::uzawa; });
+    add("W-cycles", [](SolverSettings &s) { s.cycle = Cycle::W; });
+    add("no recombination", [](SolverSettings &s) { s.recombined_steps = 0; });
+    add("no omega''", [](SolverSettings &s) {
+      s.truncation = TruncationVariant::phases_without_second_order;
+    });
+    add("truncation of all nodes in contact",
+        [](SolverSettings &s) { s.truncation = TruncationVariant::contact; });
+    add("the monotone correction", [](SolverSettings &s) {
+      s.coarse_correction = CoarseCorrection::monotone;
+    });
+
+    VectorType   solution, forces;
+    ContactState states(0, false);
+    for (const auto &choice : choices)
+      {
+        VectorType       u = d.admissible_start();
+        ContactState     state(d.contact->size(), true);
+        CoulombSolver<3> solver(
+          d.dof_handler, *d.hierarchy, d.problem(), choice.second);
+        const SolverReport report = solver.solve(u, state);
+        if (solution.size() == 0)
+          {
+            solution = u;
+            forces   = report.residual;
+            states   = state;
+            unsigned int n_hanging[2];
+            for (const bool sticking : {false, true})
+              n_hanging[sticking] =
+                fixture.n_hanging_at_contact([&](const unsigned int p) {
+                  return state.in_contact(p) && state.sticks(p) == sticking;
+                });
+            std::cout << "three dimensions, " << d.contact->size()
+                      << " contact nodes, " << state.n_contact()
+                      << " in contact, " << state.n_sticking() << " stick"
+                      << std::endl;
+            check(n_hanging[0] > 0 && n_hanging[1] > 0,
+                  "nodes hang at sliding and at sticking nodes");
+            check_below(report.certificate.largest(), 1e-8, "certified");
+          }
+        check(report.converged && same_states(state, states) &&
+                largest_difference(u, solution) <=
+                  1e-7 * solution.linfty_norm() &&
+                largest_difference(report.residual, forces) <=
+                  1e-7 * forces.linfty_norm(),
+              choice.first);
+      }
   }
 
 
@@ -282,6 +359,7 @@ main(int argc, char **argv)
 {
   Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   compare_algorithms();
+  compare_in_3d();
   compare_guesses();
   without_friction();
 }

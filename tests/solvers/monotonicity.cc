@@ -1,6 +1,15 @@
 // With given friction bounds (Tresca) the energy must not increase in any part
 // of the iteration, and all iterates must be admissible: on meshes with hanging
 // nodes, from random starts, for both coarse corrections and both cycles.
+//
+// The monotone correction takes no look at the energy: it minimises a quadratic
+// model within bounds. In 2D the energy is that model. In 3D it is not, since
+// the slip may turn: a turn costs less than the model says where the slip gets
+// longer at the same time, more where it gets shorter. That the energy does not
+// increase is no theorem there, but it was not found to in any of 1400
+// corrections from iterates near and far from the solution, with bounds of
+// friction from a tenth to a hundred times those of equilibrium; so it is asked
+// for. What the model says is looked at besides.
 
 #include <common/multigrid/coarse_cycle.h>
 #include <common/multigrid/linearization.h>
@@ -9,10 +18,10 @@
 #include <common/solvers/tresca_functional.h>
 
 #include <iostream>
-#include <random>
 
 #include "../support/check_below.h"
 #include "../support/nested_iteration.h"
+#include "../support/random_problem.h"
 
 using namespace Tests;
 
@@ -29,18 +38,21 @@ namespace
    * like those of its Coulomb solution, but disturbed, and not zero at nodes
    * that are open, so that all phases occur.
    */
+  template <int dim>
   class TrescaProblem
   {
   public:
-    TrescaProblem(const std::string &scene_file, const unsigned int refinements)
-      : parameters(read_parameters(scene_file))
+    TrescaProblem(const Parameters  &parameters,
+                  const unsigned int refinements,
+                  const unsigned int adaptive_refinements)
+      : random(17)
+      , parameters(parameters)
       , scene(parameters)
-      , mesh(make_triangulation<2>())
-      , generator(17)
+      , mesh(make_triangulation<dim>())
     {
       scene.make_coarse_mesh(*mesh);
       mesh->refine_global(refinements);
-      for (unsigned int step = 0; step < 3; ++step)
+      for (unsigned int step = 0; step < adaptive_refinements; ++step)
         {
           // Towards the middle of the contact boundary, and here and there.
           unsigned int n = 0;
@@ -61,14 +73,14 @@ namespace
             }
           mesh->execute_coarsening_and_refinement();
         }
-      discretization = std::make_unique<Discretization<2>>(scene, *mesh);
+      discretization = std::make_unique<Discretization<dim>>(scene, *mesh);
 
-      VectorType       u = discretization->admissible_start();
-      ContactState     state(discretization->contact->size(), true);
-      CoulombSolver<2> solver(discretization->dof_handler,
-                              *discretization->hierarchy,
-                              discretization->problem(),
-                              parameters.solver);
+      VectorType         u = discretization->admissible_start();
+      ContactState       state(discretization->contact->size(), true);
+      CoulombSolver<dim> solver(discretization->dof_handler,
+                                *discretization->hierarchy,
+                                discretization->problem(),
+                                parameters.solver);
       converged      = solver.solve(u, state).converged;
       length         = u.linfty_norm();
       double largest = 0;
@@ -79,11 +91,11 @@ namespace
                                 (p % 3 == 0 ? largest * random(0, 0.02) : 0));
     }
 
-    DiscreteProblem<2>
+    DiscreteProblem<dim>
     problem() const
     {
-      DiscreteProblem<2> result = discretization->problem();
-      result.friction_law       = FrictionLaw::tresca;
+      DiscreteProblem<dim> result = discretization->problem();
+      result.friction_law         = FrictionLaw::tresca;
       return result;
     }
 
@@ -96,23 +108,17 @@ namespace
       return state;
     }
 
-    double
-    random(const double low, const double high)
-    {
-      return std::uniform_real_distribution<double>(low, high)(generator);
-    }
-
     /** Random at all components that are free, zero elsewhere. */
     VectorType
     random_direction()
     {
-      const NodalConstraints<2> &constraints = *discretization->constraints;
-      VectorType                 v(constraints.partitioner());
+      const NodalConstraints<dim> &constraints = *discretization->constraints;
+      VectorType                   v(constraints.partitioner());
       for (unsigned int node = 0; node < constraints.n_owned_nodes(); ++node)
-        for (unsigned int c = 0; c < 2; ++c)
+        for (unsigned int c = 0; c < dim; ++c)
           if (!constraints.is_hanging(node) &&
               !constraints.is_prescribed(node, c))
-            v.local_element(2 * node + c) = random(-1, 1);
+            v.local_element(dim * node + c) = random(-1, 1);
       return v;
     }
 
@@ -122,14 +128,27 @@ namespace
     {
       VectorType u = discretization->admissible_start();
       u.add(0.3 * length, random_direction());
-      for (const ContactNode<2> &node : *discretization->contact)
+      for (const ContactNode<dim> &node : *discretization->contact)
         {
           const double excess = normal_component(node, u) - node.gap;
           if (excess > 0)
-            for (unsigned int d = 0; d < 2; ++d)
-              u.local_element(2 * node.node + d) -= excess * node.normal()[d];
+            for (unsigned int d = 0; d < dim; ++d)
+              u.local_element(dim * node.node + d) -= excess * node.normal()[d];
         }
       return u;
+    }
+
+    /** Hanging nodes of the contact boundary, one of whose masters is in
+     * contact and sticks, or does not. */
+    unsigned int
+    n_hanging_at_contact(const ContactState &state, const bool sticks) const
+    {
+      return Tests::n_hanging_at_contact<dim>(*discretization,
+                                              scene.contact_boundary_id(),
+                                              [&](const unsigned int p) {
+                                                return state.in_contact(p) &&
+                                                  state.sticks(p) == sticks;
+                                              });
     }
 
     VectorType
@@ -149,40 +168,72 @@ namespace
       return Av;
     }
 
-    const Parameters                                         parameters;
-    const Scene<2>                                           scene;
-    std::unique_ptr<parallel::distributed::Triangulation<2>> mesh;
-    std::unique_ptr<Discretization<2>>                       discretization;
-    bool                                                     converged = false;
-    double                                                   length    = 0;
-    std::vector<double>                                      normal_forces;
-
-  private:
-    std::mt19937 generator;
+    Random                                                     random;
+    const Parameters                                           parameters;
+    const Scene<dim>                                           scene;
+    std::unique_ptr<parallel::distributed::Triangulation<dim>> mesh;
+    std::unique_ptr<Discretization<dim>>                       discretization;
+    bool                converged = false;
+    double              length    = 0;
+    std::vector<double> normal_forces;
   };
 
 
 
+  template <int dim>
+  Tensor<1, dim - 1>
+  slip_of(const ContactNode<dim> &node, const VectorType &u)
+  {
+    const auto         u_T = tangential_components<dim>(node, u);
+    Tensor<1, dim - 1> result;
+    for (unsigned int t = 0; t < dim - 1; ++t)
+      result[t] = u_T[t];
+    return result;
+  }
+
+
+
+  // v^T omega'' v, which the energy of the linearised problem has besides that
+  // of the stiffness matrix.
+  template <int dim>
+  double
+  curvature_of_friction(const Truncation<dim> &truncation, const VectorType &v)
+  {
+    double sum = 0;
+    for (const unsigned int node : truncation.special_nodes())
+      sum += dot<dim>(
+        v.begin() + dim * node,
+        times<dim>(truncation.curvature(node).data(), v.begin() + dim * node)
+          .data());
+    return sum;
+  }
+
+
+
   // The parts of a step, one after the other.
+  template <int dim>
   void
-  part_by_part(TrescaProblem         &fixture,
+  part_by_part(TrescaProblem<dim>    &fixture,
                const CoarseCorrection correction,
                const Cycle            cycle)
   {
-    const Discretization<2>  &d       = *fixture.discretization;
-    const DiscreteProblem<2>  problem = fixture.problem();
-    const TrescaFunctional<2> functional(problem);
-    const double              F = problem.friction_coefficient;
-    const MonotoneSmoother<2> smoother(d.matrix, *d.constraints, *d.contact, F);
-    Linearization<2>          linearization(
+    const Discretization<dim>  &d       = *fixture.discretization;
+    const DiscreteProblem<dim>  problem = fixture.problem();
+    const TrescaFunctional<dim> functional(problem);
+    const double                F = problem.friction_coefficient;
+    const MonotoneSmoother<dim> smoother(
+      d.matrix, *d.constraints, *d.contact, F);
+    Linearization<dim> linearization(
       d.matrix, *d.constraints, *d.contact, F, TruncationVariant::phases);
-    CoarseCycle<2> coarse(
+    CoarseCycle<dim> coarse(
       d.dof_handler, d.matrix, *d.hierarchy, *d.constraints, cycle, 6);
 
     double increase_in_sweeps = 0, increase_in_correction = 0,
-           penetration = -1e300, outside_of_bounds = 0, outside_of_space = 0;
+           increase_in_model = 0, increase_in_step = 0, penetration = -1e300,
+           outside_of_bounds = 0, outside_of_space = 0, disturbed = 0;
     bool         descent = true, phases_kept = true;
     unsigned int open_but_held = 0, sliding = 0, sticking = 0, open = 0;
+    unsigned int hanging_at_sliding = 0, hanging_at_sticking = 0;
 
     for (unsigned int start = 0; start < 3; ++start)
       {
@@ -199,6 +250,7 @@ namespace
             penetration, functional.largest_penetration(u) / fixture.length);
         };
 
+        double last_smoothed = energy;
         for (unsigned int step = 0; step < 8; ++step)
           {
             for (unsigned int sweep = 0; sweep < 3; ++sweep)
@@ -206,6 +258,11 @@ namespace
                 smoother.sweep(u, problem.forces, state, false, false);
                 compare(increase_in_sweeps);
               }
+            increase_in_step = std::max(
+              increase_in_step, (energy - last_smoothed) / std::abs(energy));
+            last_smoothed = energy;
+            hanging_at_sliding += fixture.n_hanging_at_contact(state, false);
+            hanging_at_sticking += fixture.n_hanging_at_contact(state, true);
             for (unsigned int p = 0; p < state.size(); ++p)
               (state.in_contact(p)
                  ? (state.sticks(p) ? sticking : sliding)
@@ -225,10 +282,11 @@ namespace
 
                 // Bounds hold for components of nodes that are not truncated;
                 // a truncated one moves within its free subspace.
-                for (const ContactNode<2> &node : *d.contact)
+                for (const ContactNode<dim> &node : *d.contact)
                   if (linearization.truncation().projector(node.node) ==
-                      identity_block<2>())
-                    for (unsigned int i = 2 * node.node; i < 2 * node.node + 2;
+                      identity_block<dim>())
+                    for (unsigned int i = dim * node.node;
+                         i < dim * (node.node + 1);
                          ++i)
                       outside_of_bounds = std::max(
                         {outside_of_bounds,
@@ -241,15 +299,22 @@ namespace
                 for (unsigned int p = 0; p < state.size(); ++p)
                   if (state.normal_force(p) > 0 && !state.sticks(p))
                     {
-                      const double before =
-                        tangential_components<2>((*d.contact)[p], u)[0];
-                      const double after = before +
-                        tangential_components<2>((*d.contact)[p], v)[0];
+                      const auto before = slip_of<dim>((*d.contact)[p], u);
+                      const auto after =
+                        before + slip_of<dim>((*d.contact)[p], v);
                       phases_kept = phases_kept &&
-                        (before == 0 ||
-                         after / before >= -1e-10 * fixture.length);
+                        after * before >=
+                          -1e-13 * fixture.length * before.norm();
                     }
                 descent = descent && r * v >= 0;
+                increase_in_model =
+                  std::max(increase_in_model,
+                           (.5 *
+                              (v * fixture.product(v) +
+                               curvature_of_friction<dim>(
+                                 linearization.truncation(), v)) -
+                            r * v) /
+                             std::abs(energy));
               }
             else
               {
@@ -278,6 +343,15 @@ namespace
               }
             u += v;
             compare(increase_in_correction);
+            for (unsigned int p = 0; p < state.size(); ++p)
+              {
+                const ContactNode<dim> &node = (*d.contact)[p];
+                if (state.in_contact(p))
+                  disturbed = std::max(
+                    disturbed, std::abs(normal_component(node, u) - node.gap));
+                if (state.sticks(p))
+                  disturbed = std::max(disturbed, slip_of<dim>(node, u).norm());
+              }
 
             for (unsigned int sweep = 0; sweep < 3; ++sweep)
               {
@@ -289,14 +363,22 @@ namespace
 
     check(open > 0 && sliding > 0 && sticking > 0 && open_but_held > 0,
           "all phases occur");
+    check((hanging_at_sliding > 0 && hanging_at_sticking > 0) == (dim == 3),
+          dim == 2 ? "no node hangs on the contact boundary"
+                   : "nodes hang at sliding and at sticking nodes");
     check_below(increase_in_sweeps, rounding, "energy in sweeps");
     check_below(
       increase_in_correction, rounding, "energy in coarse corrections");
+    check_below(increase_in_step, rounding, "energy from step to step");
     check_below(penetration, 1e-14, "admissible");
     check_below(outside_of_space, 1e-12, "corrections in the free subspace");
+    check_below(disturbed / fixture.length,
+                1e-14,
+                "nodes in contact stay there, sticking ones stick");
     check(descent, "corrections go downhill");
     if (correction == CoarseCorrection::monotone)
       {
+        check_below(increase_in_model, rounding, "energy of their model");
         check_below(outside_of_bounds, 1e-14, "within the bounds");
         check(phases_kept, "no sliding node turns round");
       }
@@ -305,15 +387,17 @@ namespace
 
 
   // The iteration itself, by what it reports.
+  template <int dim>
   void
-  whole_iteration(TrescaProblem &fixture)
+  whole_iteration(TrescaProblem<dim> &fixture)
   {
-    const Discretization<2>  &d       = *fixture.discretization;
-    const DiscreteProblem<2>  problem = fixture.problem();
-    const TrescaFunctional<2> functional(problem);
+    const Discretization<dim>  &d       = *fixture.discretization;
+    const DiscreteProblem<dim>  problem = fixture.problem();
+    const TrescaFunctional<dim> functional(problem);
 
     double     increase = 0, penetration = -1e300, difference = 0;
-    bool       converged = true;
+    double     certificate = 0;
+    bool       converged   = true;
     VectorType solution;
     for (unsigned int start = 0; start < 2; ++start)
       {
@@ -332,9 +416,9 @@ namespace
               if (variant == 4)
                 settings.truncation = TruncationVariant::contact;
 
-              VectorType           u(u_0);
-              ContactState         state = fixture.initial_state();
-              MonotoneMultigrid<2> multigrid(
+              VectorType             u(u_0);
+              ContactState           state = fixture.initial_state();
+              MonotoneMultigrid<dim> multigrid(
                 d.dof_handler, *d.hierarchy, problem, settings);
               const double          first  = functional.energy(u, state);
               const MultigridResult result = multigrid.solve(u, state, false);
@@ -352,6 +436,16 @@ namespace
               penetration =
                 std::max(penetration,
                          functional.largest_penetration(u) / fixture.length);
+              certificate =
+                std::max(certificate,
+                         make_certificate<dim>(u,
+                                               fixture.residual(u),
+                                               *d.constraints,
+                                               *d.contact,
+                                               state,
+                                               problem.friction_coefficient,
+                                               false)
+                           .largest());
               for (unsigned int p = 0; p < state.size(); ++p)
                 converged = converged &&
                   state.normal_force(p) == fixture.normal_forces[p];
@@ -359,7 +453,7 @@ namespace
                 solution = u;
               else
                 for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-                  if (!d.constraints->is_hanging(i / 2))
+                  if (!d.constraints->is_hanging(i / dim))
                     difference = std::max(
                       difference,
                       std::abs(u.local_element(i) - solution.local_element(i)) /
@@ -369,19 +463,21 @@ namespace
     check(converged, "all variants converge, given forces stay as they are");
     check_below(increase, rounding, "energy from cycle to cycle");
     check_below(penetration, 1e-14, "admissible");
+    check_below(certificate, 1e-8, "certified");
     check_below(difference, 1e-8, "one solution");
   }
 
 
 
   // Against brute force along random lines.
+  template <int dim>
   void
-  line_search(TrescaProblem &fixture)
+  line_search(TrescaProblem<dim> &fixture)
   {
-    const Discretization<2>  &d       = *fixture.discretization;
-    const DiscreteProblem<2>  problem = fixture.problem();
-    const TrescaFunctional<2> functional(problem);
-    ContactState              state = fixture.initial_state();
+    const Discretization<dim>  &d       = *fixture.discretization;
+    const DiscreteProblem<dim>  problem = fixture.problem();
+    const TrescaFunctional<dim> functional(problem);
+    ContactState                state = fixture.initial_state();
 
     const unsigned int n_points = 400;
     double             excess = 0, distance = 0;
@@ -397,10 +493,12 @@ namespace
         if (line % 3 == 0)
           for (unsigned int p = 0; p < state.size(); p += 2)
             {
-              const ContactNode<2> &node = (*d.contact)[p];
-              const double          u_T  = tangential_components<2>(node, u)[0];
-              for (unsigned int c = 0; c < 2; ++c)
-                u.local_element(2 * node.node + c) -= u_T * node.frame[1][c];
+              const ContactNode<dim> &node = (*d.contact)[p];
+              const auto              u_T  = slip_of<dim>(node, u);
+              for (unsigned int t = 1; t < dim; ++t)
+                for (unsigned int c = 0; c < dim; ++c)
+                  u.local_element(dim * node.node + c) -=
+                    u_T[t - 1] * node.frame[t][c];
             }
         VectorType       v = fixture.random_direction();
         const VectorType r = fixture.residual(u);
@@ -451,11 +549,12 @@ namespace
 
 
 
+  template <int dim>
   void
-  projection(TrescaProblem &fixture)
+  projection(TrescaProblem<dim> &fixture)
   {
-    const Discretization<2>  &d = *fixture.discretization;
-    const TrescaFunctional<2> functional(fixture.problem());
+    const Discretization<dim>  &d = *fixture.discretization;
+    const TrescaFunctional<dim> functional(fixture.problem());
 
     double penetration = -1e300, penetration_of_length = -1e300, changed = 0;
     bool   counted = true, longest = true, at_least_one = true;
@@ -473,22 +572,21 @@ namespace
         penetration = std::max(
           penetration, functional.largest_penetration(w) / fixture.length);
         unsigned int expected = 0;
-        for (const ContactNode<2> &node : *d.contact)
+        for (const ContactNode<dim> &node : *d.contact)
           {
             const bool too_far = normal_component(node, u) +
                 normal_component(node, original) - node.gap >
               1e-12 * fixture.length;
             expected += too_far;
             VectorType difference(v);
-            changed =
-              std::max({changed,
-                        std::abs(tangential_components<2>(node, v)[0] -
-                                 tangential_components<2>(node, original)[0]) /
-                          fixture.length,
-                        too_far ? 0.
-                                : std::abs(normal_component(node, v) -
-                                           normal_component(node, original)) /
-                            fixture.length});
+            changed = std::max(
+              {changed,
+               (slip_of<dim>(node, v) - slip_of<dim>(node, original)).norm() /
+                 fixture.length,
+               too_far ? 0.
+                       : std::abs(normal_component(node, v) -
+                                  normal_component(node, original)) /
+                   fixture.length});
           }
         counted = counted && n_projected == expected;
 
@@ -498,9 +596,9 @@ namespace
 
         // From a start without contact: as long as possible, no longer.
         VectorType inside(u);
-        for (const ContactNode<2> &node : *d.contact)
-          for (unsigned int c = 0; c < 2; ++c)
-            inside.local_element(2 * node.node + c) -=
+        for (const ContactNode<dim> &node : *d.contact)
+          for (unsigned int c = 0; c < dim; ++c)
+            inside.local_element(dim * node.node + c) -=
               0.01 * fixture.length * node.normal()[c];
         const double length =
           functional.admissible_length(original, inside, 2.);
@@ -528,37 +626,50 @@ namespace
   // coarse cycle plus a little block Jacobi is a symmetric positive definite
   // preconditioner; recombination must turn it into the conjugate gradient
   // method, and never make things worse.
+  template <int dim>
   void
-  recombination(TrescaProblem &fixture)
+  recombination(TrescaProblem<dim> &fixture)
   {
-    const Discretization<2> &d       = *fixture.discretization;
-    const DiscreteProblem<2> problem = fixture.problem();
-    VectorType               u       = fixture.random_start();
-    ContactState             state   = fixture.initial_state();
-    MonotoneMultigrid<2>     multigrid(
+    const Discretization<dim> &d       = *fixture.discretization;
+    const DiscreteProblem<dim> problem = fixture.problem();
+    VectorType                 u       = fixture.random_start();
+    ContactState               state   = fixture.initial_state();
+    MonotoneMultigrid<dim>     multigrid(
       d.dof_handler, *d.hierarchy, problem, SolverSettings());
     multigrid.solve(u, state, false);
-    Linearization<2> linearization(d.matrix,
-                                   *d.constraints,
-                                   *d.contact,
-                                   problem.friction_coefficient,
-                                   TruncationVariant::phases);
+    Linearization<dim> linearization(d.matrix,
+                                     *d.constraints,
+                                     *d.contact,
+                                     problem.friction_coefficient,
+                                     TruncationVariant::phases);
     linearization.update(u, state);
-    const Truncation<2> &truncation = linearization.truncation();
-    CoarseCycle<2>       coarse(
+    const Truncation<dim> &truncation = linearization.truncation();
+    CoarseCycle<dim>       coarse(
       d.dof_handler, d.matrix, *d.hierarchy, *d.constraints, Cycle::V, 6);
     coarse.update(truncation);
 
     VectorType b = fixture.random_direction();
     truncation.apply(b.begin());
+    // Without the part of friction, as the iteration has it; then with it.
     const auto residual = [&](const VectorType &x) {
       VectorType r = fixture.product(x);
       r.sadd(-1., 1., b);
       return r;
     };
-    const auto truncated = [&](VectorType r) {
+    const auto truncated_residual = [&](const VectorType &x) {
+      VectorType r = residual(x);
+      for (const unsigned int node : truncation.special_nodes())
+        {
+          const auto part = times<dim>(truncation.curvature(node).data(),
+                                       x.begin() + dim * node);
+          for (unsigned int c = 0; c < dim; ++c)
+            r.local_element(dim * node + c) -= part[c];
+        }
       truncation.apply(r.begin());
       return r;
+    };
+    const auto square = [&](const VectorType &v, const VectorType &Av) {
+      return v * Av + curvature_of_friction<dim>(truncation, v);
     };
     const auto precondition = [&](const VectorType &r) {
       VectorType v(r), w(r);
@@ -567,16 +678,16 @@ namespace
         if (!d.constraints->is_hanging(node))
           {
             const double *block  = d.matrix.block(d.matrix.row_begin(node));
-            const double  factor = 1. / (block[0] + block[3]);
-            for (unsigned int c = 0; c < 2; ++c)
-              w.local_element(2 * node + c) *= factor;
+            const double  factor = 1. / trace<dim>(block);
+            for (unsigned int c = 0; c < dim; ++c)
+              w.local_element(dim * node + c) *= factor;
           }
       truncation.apply(w.begin());
       v += w;
       return v;
     };
     const auto energy = [&](const VectorType &x) {
-      return .5 * (x * fixture.product(x)) - b * x;
+      return .5 * square(x, fixture.product(x)) - b * x;
     };
 
     const unsigned int  n_iterations = 25;
@@ -584,14 +695,13 @@ namespace
     {
       VectorType x(b);
       x            = 0.;
-      VectorType r = truncated(residual(x)), z = precondition(r), p(z);
+      VectorType r = truncated_residual(x), z = precondition(r), p(z);
       double     rz = r * z;
       for (unsigned int k = 0; k < n_iterations; ++k)
         {
-          const VectorType Ap = fixture.product(p);
-          x.add(rz / (p * Ap), p);
+          x.add(rz / square(p, fixture.product(p)), p);
           reference.push_back(energy(x));
-          r                 = truncated(residual(x));
+          r                 = truncated_residual(x);
           z                 = precondition(r);
           const double next = r * z;
           p.sadd(next / rz, 1., z);
@@ -605,20 +715,20 @@ namespace
     bool                      participants = true;
     for (const unsigned int n_steps : {0, 1, 2})
       {
-        Recombination<2> recombination(n_steps);
-        VectorType       x(b);
+        Recombination<dim> recombination(n_steps);
+        VectorType         x(b);
         x = 0.;
         needed.push_back(1000);
         for (unsigned int k = 0; k < 100; ++k)
           {
             recombination.add_iterate(x, residual(x));
-            const VectorType r  = truncated(residual(x));
+            const VectorType r  = truncated_residual(x);
             VectorType       v  = precondition(r);
             VectorType       Av = fixture.product(v);
 
-            const double       alone = (r * v) * (r * v) / (v * Av);
+            const double       alone = (r * v) * (r * v) / square(v, Av);
             const unsigned int n = recombination.improve(v, Av, r, truncation);
-            const double       together = (r * v) * (r * v) / (v * Av);
+            const double       together = (r * v) * (r * v) / square(v, Av);
             if (k < n_iterations)
               {
                 participants = participants && n == std::min(k, n_steps);
@@ -630,10 +740,10 @@ namespace
                 worse =
                   std::max(worse, deviation.linfty_norm() / Av.linfty_norm());
                 if (n > 0)
-                  length_error =
-                    std::max(length_error, std::abs((r * v) / (v * Av) - 1));
+                  length_error = std::max(
+                    length_error, std::abs((r * v) / square(v, Av) - 1));
               }
-            x.add((r * v) / (v * Av), v);
+            x.add((r * v) / square(v, Av), v);
             if (n_steps > 0 && k < 12)
               difference = std::max(
                 difference, std::abs((energy(x) - reference[k]) / minimum));
@@ -645,6 +755,12 @@ namespace
               }
           }
       }
+    double curvature = 0;
+    for (const unsigned int node : truncation.special_nodes())
+      curvature =
+        std::max(curvature, trace<dim>(truncation.curvature(node).data()));
+    check((curvature > 0) == (dim == 3),
+          dim == 2 ? "friction is linear" : "friction has a second derivative");
     check(participants, "all steps take part");
     check_below(worse, 1e-9, "recombination never makes a correction worse");
     check_below(length_error, 1e-8, "the combination has the right length");
@@ -654,28 +770,59 @@ namespace
           "more than one step neither helps nor harms");
 
     // A step that has moved a node which now is held does not take part.
-    Recombination<2> one_step(1);
-    VectorType       x(b);
+    Recombination<dim> one_step(1);
+    VectorType         x(b);
     x = 0.;
     one_step.add_iterate(x, residual(x));
-    x = precondition(truncated(residual(x)));
+    x = precondition(truncated_residual(x));
     one_step.add_iterate(x, residual(x));
-    const VectorType r     = truncated(residual(x));
+    const VectorType r     = truncated_residual(x);
     VectorType       v     = precondition(r);
     VectorType       Av    = fixture.product(v);
     unsigned int     moved = (*d.contact)[0].node;
-    for (const ContactNode<2> &node : *d.contact)
-      for (unsigned int c = 0; c < 2; ++c)
-        if (std::abs(x.local_element(2 * node.node + c)) > 0)
+    for (const ContactNode<dim> &node : *d.contact)
+      for (unsigned int c = 0; c < dim; ++c)
+        if (std::abs(x.local_element(dim * node.node + c)) > 0)
           moved = node.node;
-    Truncation<2> other(truncation);
-    other.set(moved, zero_block<2>(), zero_block<2>());
+    Truncation<dim> other(truncation);
+    other.set(moved, zero_block<dim>(), zero_block<dim>());
     VectorType w(v), Aw(Av);
     const bool left_out = one_step.improve(w, Aw, r, other) == 0;
     w -= v;
     check(left_out && w.linfty_norm() == 0 &&
             one_step.improve(v, Av, r, truncation) == 1,
           "steps out of the free subspace are left out");
+  }
+
+
+
+  template <int dim>
+  void
+  test(TrescaProblem<dim> &fixture, const std::string &name)
+  {
+    std::cout << dim << "D, mesh of '" << name << "'" << std::endl;
+    check(fixture.converged && fixture.mesh->has_hanging_nodes(),
+          "has hanging nodes, and a Coulomb solution");
+
+    for (const Cycle cycle : {Cycle::V, Cycle::W})
+      for (const CoarseCorrection correction :
+           {CoarseCorrection::truncated, CoarseCorrection::monotone})
+        {
+          std::cout << "parts: "
+                    << (correction == CoarseCorrection::truncated
+                          ? "truncated, "
+                          : "monotone, ")
+                    << (cycle == Cycle::V ? "V" : "W") << std::endl;
+          part_by_part<dim>(fixture, correction, cycle);
+        }
+    std::cout << "whole iteration" << std::endl;
+    whole_iteration<dim>(fixture);
+    std::cout << "line search" << std::endl;
+    line_search<dim>(fixture);
+    std::cout << "projection" << std::endl;
+    projection<dim>(fixture);
+    std::cout << "recombination" << std::endl;
+    recombination<dim>(fixture);
   }
 } // namespace
 
@@ -685,32 +832,17 @@ main(int argc, char **argv)
   Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   for (const std::string name : {"hertz", "block"})
     {
-      TrescaProblem fixture(std::string(SCENES_DIR) + "/" + name + ".prm",
-                            name == "hertz" ? 1 : 3);
-      std::cout << "Mesh of '" << name << "'" << std::endl;
-      check(fixture.converged && fixture.mesh->has_hanging_nodes(),
-            "has hanging nodes, and a Coulomb solution");
-
-      for (const Cycle cycle : {Cycle::V, Cycle::W})
-        for (const CoarseCorrection correction :
-             {CoarseCorrection::truncated, CoarseCorrection::monotone})
-          {
-            std::cout << "parts: "
-                      << (correction == CoarseCorrection::truncated
-                            ? "truncated, "
-                            : "monotone, ")
-                      << (cycle == Cycle::V ? "V" : "W") << std::endl;
-            part_by_part(fixture, correction, cycle);
-          }
-      std::cout << "whole iteration" << std::endl;
-      whole_iteration(fixture);
-      std::cout << "line search" << std::endl;
-      line_search(fixture);
-      std::cout << "projection" << std::endl;
-      projection(fixture);
-      std::cout << "recombination" << std::endl;
-      recombination(fixture);
+      TrescaProblem<2> fixture(
+        read_parameters(std::string(SCENES_DIR) + "/" + name + ".prm"),
+        name == "hertz" ? 1 : 3,
+        3);
+      test<2>(fixture, name);
     }
+  {
+    TrescaProblem<3> fixture(
+      curved_parameters<3>(FrictionLaw::coulomb, .4), 1, 2);
+    test<3>(fixture, "block on a rod");
+  }
 
   // What recombination is worth in practice.
   std::cout << "cycles of nested iteration" << std::endl;

@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include <numeric>
 #include <random>
 
 #include <tests/support/check_below.h>
@@ -88,6 +89,40 @@ namespace Tests
 
 
   /**
+   * A body and an obstacle whose normals point in all directions. In 2D that is
+   * the half disc on a plane. In 3D the block comes down on a rod that crosses
+   * it askew, and is pushed along it; normals are those of the rod.
+   */
+  template <int dim>
+  Parameters
+  curved_parameters(const FrictionLaw law, const double friction_coefficient)
+  {
+    Parameters p            = block_parameters<dim>(law, friction_coefficient);
+    auto      &displacement = p.boundary_conditions.displacement;
+    if (dim == 2)
+      {
+        p.scene.geometry      = GeometryKind::half_disc;
+        p.scene.radius        = 1.;
+        p.scene.distortion    = 0.;
+        p.obstacle.point      = {0., -1.};
+        p.contact.boundary_id = 0;
+        displacement          = {{"1", {"0.05", "-0.2"}}};
+      }
+    else
+      {
+        p.obstacle.kind    = ObstacleKind::rods;
+        p.obstacle.centers = {{.75, .5, -3.}};
+        p.obstacle.axes    = {{1., 2., 0.}};
+        p.obstacle.radius  = 3.;
+        p.contact.normal   = ContactNormal::obstacle;
+        displacement       = {{"5", {"0.03", "0.02", "-0.06"}}};
+      }
+    return p;
+  }
+
+
+
+  /**
    * Refines cells picked at random, those near the bottom more often, and
    * coarsens some others: hanging nodes next to the contact boundary, and mesh
    * sizes that change towards it and away from it.
@@ -113,6 +148,47 @@ namespace Tests
           }
         mesh.execute_coarsening_and_refinement();
       }
+  }
+
+
+
+  /**
+   * The number of nodes that hang on the contact boundary and have a master
+   * among the contact nodes for which a condition holds. The condition is asked
+   * with the number of the contact node. In 2D the boundary is a line, on which
+   * no node hangs.
+   */
+  template <int dim, typename Condition>
+  unsigned int
+  n_hanging_at_contact(const Discretization<dim> &discretization,
+                       const types::boundary_id   boundary_id,
+                       const Condition           &holds)
+  {
+    const auto               &constraints = *discretization.constraints;
+    const auto               &contact     = *discretization.contact;
+    std::vector<unsigned int> number(constraints.n_nodes(),
+                                     numbers::invalid_unsigned_int);
+    for (unsigned int p = 0; p < contact.size(); ++p)
+      number[contact[p].node] = p;
+    std::vector<char> counts(constraints.n_nodes(), 0);
+    for (const auto &cell : discretization.dof_handler.active_cell_iterators())
+      for (const unsigned int f : cell->face_indices())
+        if (cell->at_boundary(f) && cell->face(f)->boundary_id() == boundary_id)
+          for (unsigned int v = 0; v < cell->face(f)->n_vertices(); ++v)
+            {
+              const auto         dof  = cell->face(f)->vertex_dof_index(v, 0);
+              const unsigned int node = constraints.node_of_dof(dof);
+              if (constraints.is_hanging(node))
+                for (const auto &master :
+                     *discretization.hanging.get_constraint_entries(dof))
+                  {
+                    const unsigned int p =
+                      number[constraints.node_of_dof(master.first)];
+                    if (p != numbers::invalid_unsigned_int && holds(p))
+                      counts[node] = 1;
+                  }
+            }
+    return std::accumulate(counts.begin(), counts.end(), 0u);
   }
 
 
@@ -170,6 +246,15 @@ namespace Tests
       for (unsigned int i = 0; i < constraints().n_nodes(); ++i)
         n += constraints().is_hanging(i);
       return n;
+    }
+
+    /** See there. */
+    template <typename Condition>
+    unsigned int
+    n_hanging_at_contact(const Condition &holds) const
+    {
+      return Tests::n_hanging_at_contact<dim>(
+        *discretization, scene.contact_boundary_id(), holds);
     }
 
     /** The number of hanging nodes one of whose masters is truncated although
