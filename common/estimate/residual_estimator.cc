@@ -50,6 +50,8 @@ namespace Friction
       // Book a contribution both where and why it arises.
       void add(const CellIterator &cell, const double value, double &share);
 
+      double square_of_rounding(const CellIterator &cell) const;
+
       Tensor<1, dim> stress_times_normal(const SymmetricTensor<2, dim> &strain,
                                          const Tensor<1, dim> &normal) const;
 
@@ -159,9 +161,32 @@ namespace Friction
         std::sqrt(Utilities::MPI::sum(energy, communicator));
 
       estimate.cell_errors.reinit(squared_errors.size());
-      for (unsigned int i = 0; i < squared_errors.size(); ++i)
-        estimate.cell_errors(i) = std::sqrt(squared_errors(i));
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            const double error = squared_errors(cell->active_cell_index());
+            if (error > square_of_rounding(cell))
+              estimate.cell_errors(cell->active_cell_index()) =
+                std::sqrt(error);
+          }
       return estimate;
+    }
+
+
+
+    // A cell that merely moves has stresses that are nothing but rounding, and
+    // what the solver's tolerance leaves. The energy that displacements of this
+    // size could have tells them from others.
+    template <int dim>
+    double
+    Estimator<dim>::square_of_rounding(const CellIterator &cell) const
+    {
+      double u = 0.;
+      for (const unsigned int v : cell->vertex_indices())
+        for (unsigned int c = 0; c < dim; ++c)
+          u = std::max(u, std::abs(displacement(cell->vertex_dof_index(v, c))));
+      return 1e-18 * 2. * problem.mu * u * u *
+        std::pow(cell->diameter(), dim - 2);
     }
 
 

@@ -145,9 +145,10 @@ namespace Friction
 
 
   // The innermost loop of everything, hence inline. The compiler's own vector
-  // type makes each column of a block one instruction in two dimensions, and
-  // two in three. Each column has sums of its own: with a single one every
-  // addition would have to wait for the one before.
+  // type makes each column of a block one instruction in two dimensions; in
+  // three it takes two rows at once, and the third on its own. Each column has
+  // sums of its own: with a single one every addition would have to wait for
+  // the one before.
   template <int dim>
   inline NodeValue<dim>
   NodeBlockMatrix<dim>::row_times(const unsigned int row, const double *x) const

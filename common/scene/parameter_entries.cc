@@ -301,7 +301,7 @@ namespace Friction
        "secular equation",
        choice("secular equation|Uzawa"),
        "3D: how the slip of a single node is found. 'secular equation': one "
-       "scalar equation for its length. 'Uzawa': an iteration for the "
+       "scalar equation for its direction. 'Uzawa': an iteration for the "
        "tangential force. In 2D there are but two directions to choose from."},
       {"Solver",
        "Inner tolerance",

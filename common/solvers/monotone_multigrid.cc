@@ -221,8 +221,8 @@ namespace Friction
 
     if (settings.coarse_correction == CoarseCorrection::monotone)
       {
-        // Admissible, within the phases, and lowering the energy as it is: no
-        // line search. Only rounding is projected away.
+        // Admissible, within the phases, and in two dimensions lowering the
+        // energy as it is: no line search. Only rounding is projected away.
         const Stopwatch work(costs.coarse_correction);
         VectorType      lower(u), upper(u);
         linearization.bounds(lower, upper, u, state);

@@ -56,10 +56,14 @@ namespace Friction
    * - phases, truncation and constrained Newton terms, Linearization,
    * - the coarse correction, CoarseCycle,
    * - its recombination with the last steps, Recombination,
-   * - projection and line search, TrescaFunctional,
+   * - projection to what is admissible and reverses no slip, and line search,
+   *   TrescaFunctional,
    *
    * and the relaxation once more, backwards. With given normal forces (Tresca)
-   * the energy never increases and the iterates stay admissible.
+   * the iterates stay admissible and the energy never increases. The exception
+   * is CoarseCorrection::monotone in three dimensions: it has no line search,
+   * and a correction that lowers the linearised energy lowers the true one only
+   * where friction is piecewise linear, in two.
    */
   template <int dim>
   class MonotoneMultigrid

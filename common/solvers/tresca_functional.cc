@@ -128,7 +128,7 @@ namespace Friction
             const auto              a    = tangential_components<dim>(node, u);
             const auto              b    = tangential_components<dim>(node, v);
             double                  uu = 0, uv = 0;
-            for (unsigned int t = 0; t < dim - 1; ++t)
+            for (unsigned int t = 0; t < node.n_free_tangents; ++t)
               {
                 uu += a[t] * a[t];
                 uv += a[t] * b[t];
@@ -136,7 +136,7 @@ namespace Friction
             if (uu + uv >= 0 || uu == 0)
               continue;
             ++n_changed;
-            for (unsigned int t = 1; t < dim; ++t)
+            for (unsigned int t = 1; t <= node.n_free_tangents; ++t)
               for (unsigned int d = 0; d < dim; ++d)
                 v.local_element(dim * node.node + d) -=
                   (uu + uv) / uu * a[t - 1] * node.frame[t][d];

@@ -39,8 +39,9 @@ namespace Friction
 
     /**
      * Changes @p v such that at each sliding node $(u+v)_T\cdot u_T\ge0$: no
-     * node slips back beyond where it came from. Returns the number of nodes
-     * where it had to.
+     * node slips back beyond where it came from (prescribed components do not
+     * count, as they do not change). Returns the number of nodes where it had
+     * to.
      */
     unsigned int keep_slip(VectorType         &v,
                            const VectorType   &u,
@@ -49,9 +50,8 @@ namespace Friction
     /**
      * The exact minimiser of $\hat J(u+\alpha v)$ over $0\le\alpha\le$ @p
      * largest, the obstacle being disregarded. The energy is convex along the
-     * line and smooth but for the points where a node changes its direction of
-     * slip, so that regula falsi on the derivative, safeguarded by bisection,
-     * finds it.
+     * line and smooth but for the points where a node comes to rest, so that
+     * regula falsi on the derivative, safeguarded by bisection, finds it.
      *
      * @param slope      $(f - A u)\cdot v$, the decrease of the quadratic part.
      * @param curvature  $v^T A v$.
