@@ -40,11 +40,15 @@ for F in "$@"; do
   row "  3+3 coarse, neither" "$friction" 'Solver/Coarse smoothing steps=3' \
     'Solver/Maximum damping=1' 'Solver/Recombined steps=0'
   row "  all contact nodes truncated" "$friction" 'Solver/Truncation=contact'
-  row "  without second order" "$friction" "$without"
+  case $program in
+  *3d) row "  without second order" "$friction" "$without" ;;
+  esac
   row "monotone, 6+6 coarse" "$friction" "$monotone"
   row "monotone, plain V(3,3)" "$friction" "$monotone" \
     'Solver/Coarse smoothing steps=3'
-  row "monotone, without second order" "$friction" "$monotone" "$without"
+  case $program in
+  *3d) row "monotone, without second order" "$friction" "$monotone" "$without" ;;
+  esac
 done
 echo "W-cycles, to $dofs_of_w dofs"
 dofs=$dofs_of_w
