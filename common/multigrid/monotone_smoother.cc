@@ -95,12 +95,15 @@ namespace Friction
                                          const bool         update) {
       const unsigned int begin = first_contact[chunk],
                          end   = first_contact[chunk + 1];
+      const auto at            = [&](const unsigned int i) {
+        return by_chunk[what.backwards ? begin + end - 1 - i : i];
+      };
       for (unsigned int i = begin; i < end; ++i)
-        relax_contact_node(by_chunk[what.backwards ? begin + end - 1 - i : i],
-                           u,
-                           f,
-                           state,
-                           update);
+        {
+          if (i + 1 < end)
+            matrix.prefetch(contact[at(i + 1)].node);
+          relax_contact_node(at(i), u, f, state, update);
+        }
     };
 
     schedule.run(what.n + (residual != nullptr ? 1 : 0),
