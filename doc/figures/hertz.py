@@ -1,10 +1,9 @@
-"""The runs of the Hertz scene: their histories, and the closed forms that they
-are compared with."""
+"""The runs of the Hertz scene, and the closed forms and published numbers that
+they are compared with."""
 
-from pathlib import Path
-
-import h5py
 import numpy as np
+
+from history import Run
 
 YOUNG, POISSON, RADIUS = 1.0, 0.325, 1.0
 
@@ -41,20 +40,8 @@ def peak(force):
     return 2 * force / (np.pi * width(force))
 
 
-class Run:
-    """The history of a run."""
-
-    def __init__(self, directory):
-        self.directory = Path(directory)
-        with h5py.File(self.directory / "history.h5") as file:
-            self.levels = {name: data[:]
-                           for name, data in file["levels"].items()}
-            self.outer = ({name: data[:] for name, data in file["outer"].items()}
-                          if "outer" in file else None)
-            self.contact = {int(name[-2:]): {key: data[:]
-                                             for key, data in group.items()}
-                            for name, group in file["contact"].items()}
-        self.last = int(self.levels["level"][-1])
+class HertzRun(Run):
+    """The history of a run of the scene, in Hertz's terms."""
 
     def stresses(self, level=None):
         """Positions along the contact boundary from left to right, pressure,

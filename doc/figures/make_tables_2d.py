@@ -1,22 +1,17 @@
 #!/usr/bin/env python3
-"""The tables of the documentation, from the runs that the CMake target
-`figures` does:  make_tables.py RUNS OUTPUT DOCUMENT
+"""The tables of step-friction-2d, from the runs that the CMake target
+`figures-2d` does:  make_tables_2d.py RUNS OUTPUT DOCUMENT"""
 
-Each goes to a text file in OUTPUT, and to the place that is marked for it in
-DOCUMENT."""
-
-import re
 import sys
+from functools import partial
 from pathlib import Path
 
 import h5py
 import numpy as np
 
-from hertz import HALF_PLANE, THESIS, Run
-
-
-def show(value, text="{}"):
-    return "-" if value is None else text.format(value)
+import tables
+from hertz import HALF_PLANE, THESIS, HertzRun
+from tables import show
 
 
 def console(runs):
@@ -26,7 +21,7 @@ def console(runs):
 
 def table_6_1(runs):
     """Algorithms 2 and 3 beside the thesis, level by level."""
-    jacobi, seidel = Run(runs / "fixed-point"), Run(runs / "W33-monotone")
+    jacobi, seidel = HertzRun(runs / "fixed-point"), HertzRun(runs / "W33-monotone")
     rows = ["       |                    thesis, table 6.1                    |"
             "                          here",
             " level |    dof contact sticky outer  Jac   GS  rho_tau          |"
@@ -54,7 +49,7 @@ def cycles(runs):
                ("W33-trunc", "W33-truncated"), ("V33-mono", "V33-monotone"),
                ("W33-mono", "W33-monotone"), ("F=0", "F-0"), ("F=0.05", "F-0.05"),
                ("F=1", "F-1")]
-    histories = [Run(runs / directory) for _, directory in columns]
+    histories = [HertzRun(runs / directory) for _, directory in columns]
     rows = [" level     dofs " + "".join(f"{name:>10}" for name, _ in columns)]
     for k in histories[0].levels["level"]:
         rows.append(f" {k:5d} {histories[0].levels['dofs'][k]:8d} " +
@@ -71,7 +66,7 @@ def comparison(runs):
         name = f"F-{friction:g}"
         for label, directory in (("scene", "hertz" if friction == 0.4 else name),
                                  ("quarter depth", "quarter-" + name)):
-            run = Run(runs / directory)
+            run = HertzRun(runs / directory)
             found = run.factors()
             level = {name: values[-1] for name, values in run.levels.items()}
             rows.append(
@@ -79,7 +74,7 @@ def comparison(runs):
                 f"{level['contact_nodes']:8d} {level['sticky_nodes']:6d} | "
                 "{:7.5f}  {:6.4f}  {:6.4f} |           ".format(*found) +
                 "{:7.5f}  {:6.4f}  {:6.4f}".format(*reference))
-    run = Run(runs / "obstacle-normal")
+    run = HertzRun(runs / "obstacle-normal")
     level = {name: values[-1] for name, values in run.levels.items()}
     rows.append(f" 0.00  normal of obst. {level['dofs']:6d}"
                 f" {level['contact_nodes']:7d} {level['sticky_nodes']:6d} | "
@@ -101,7 +96,7 @@ def ripple(run, level):
 def checks(runs):
     """Single numbers that the text quotes."""
     rows = []
-    jacobi, seidel = Run(runs / "fixed-point"), Run(runs / "W33-monotone")
+    jacobi, seidel = HertzRun(runs / "fixed-point"), HertzRun(runs / "W33-monotone")
     for name in ("force", "displacement"):
         difference = max(
             np.abs(jacobi.contact[k][name] - seidel.contact[k][name]).max() /
@@ -109,7 +104,7 @@ def checks(runs):
         rows.append(f" Algorithms 2 and 3, largest difference of a contact "
                     f"{name}, of the largest: {difference:.0e}")
     for friction, directory in ((0.05, "F-0.05"), (0.4, "hertz"), (1.0, "F-1")):
-        run = Run(runs / directory)
+        run = HertzRun(runs / directory)
         x, pressure, shear, state = run.stresses()
         slides = state == 1
         gap = np.abs(np.abs(shear) - friction * pressure)[slides].max()
@@ -121,11 +116,11 @@ def checks(runs):
                     " ".join(f"{ripple(run, level):.1e}"
                              for level in range(first, run.last + 1)))
     rows.append(" F=0.05 sticking nodes by level: " +
-                " ".join(map(str, Run(runs / "F-0.05").levels["sticky_nodes"])))
+                " ".join(map(str, HertzRun(runs / "F-0.05").levels["sticky_nodes"])))
     # The estimator alone refines in smaller steps: its last mesh that is not
     # larger is the one to compare with.
-    all_contact = Run(runs / "hertz").levels
-    alone = Run(runs / "estimator-only").levels
+    all_contact = HertzRun(runs / "hertz").levels
+    alone = HertzRun(runs / "estimator-only").levels
     for name, levels in (("true", all_contact), ("false", alone)):
         k = np.flatnonzero(levels["dofs"] <= all_contact["dofs"][-1])[-1]
         rows.append(f" Contact zone = {name}: {levels['dofs'][k]} dofs, "
@@ -146,11 +141,11 @@ def checks(runs):
                 "how many components were truncated:")
     rows += ["   " + " ".join(f"{value:5.0e}" for value in increments),
              "   " + " ".join(f"{value:5.0f}" for value in truncated)]
-    marked = {f: Run(runs / f"marking-F-{f:g}").levels["cycles"].max()
+    marked = {f: HertzRun(runs / f"marking-F-{f:g}").levels["cycles"].max()
               for f in (0.05, 0.4, 1)}
     rows.append(" V(3,3) monotone, Marking = 0.5, most cycles on a level: " +
                 ", ".join(f"{most} for F={f:g}" for f, most in marked.items()))
-    worst = max(Run(path.parent).levels["certificate"].max()
+    worst = max(HertzRun(path.parent).levels["certificate"].max()
                 for path in runs.glob("*/history.h5"))
     rows.append(f" largest certificate on any level of any run here: {worst:.0e}")
     return "\n".join(rows)
@@ -158,20 +153,11 @@ def checks(runs):
 
 def main():
     runs, output, document = map(Path, sys.argv[1:4])
-    text = document.read_text()
-    for name, make in (("console", console), ("table-6.1", table_6_1),
-                       ("cycles", cycles), ("half-plane", comparison),
-                       ("checks", checks)):
-        table = make(runs)
-        (output / f"{name}.txt").write_text(table + "\n")
-        print(table + "\n")
-        text, n = re.subn(
-            rf"(<!-- {re.escape(name)}\.txt -->\n@code\{{\.txt\}}\n).*?(@endcode)",
-            lambda match: match.group(1) + table + "\n" + match.group(2),
-            text, flags=re.S)
-        if n > 1:
-            sys.exit(f"{document}: more than one place for {name}.txt")
-    document.write_text(text)
+    tables.write({"console": partial(console, runs),
+                  "table-6.1": partial(table_6_1, runs),
+                  "cycles": partial(cycles, runs),
+                  "half-plane": partial(comparison, runs),
+                  "checks": partial(checks, runs)}, output, document)
 
 
 if __name__ == "__main__":

@@ -1,57 +1,24 @@
 #!/usr/bin/env python3
-"""The pictures of the documentation, from the runs that the CMake target
-`figures` does:  make_figures.py RUNS OUTPUT"""
+"""The pictures of step-friction-2d, from the runs that the CMake target
+`figures-2d` does:  make_figures_2d.py RUNS OUTPUT"""
 
 import sys
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import LineCollection
-from matplotlib.colors import LinearSegmentedColormap, PowerNorm
+from matplotlib.colors import PowerNorm
 from matplotlib.patches import Rectangle
-from PIL import Image
 
 import vtu
-from hertz import THESIS, Run, peak, width
-
-# The palette of Okabe and Ito, which colour-blind readers can tell apart.
-BLUE, RED, GREEN, ORANGE, SKY, PINK = ("#0072B2", "#D55E00", "#009E73",
-                                       "#E69F00", "#56B4E9", "#CC79A7")
-GREY = "0.45"
-
-# Light where nothing happens, and never so dark that the mesh cannot be seen.
-STRESS = LinearSegmentedColormap.from_list(
-    "stress", plt.get_cmap("magma_r")(np.linspace(0, 0.8, 256)))
-
-plt.rcParams.update({
-    "font.size": 10, "axes.titlesize": 10, "axes.spines.top": False,
-    "axes.spines.right": False, "legend.frameon": False, "lines.linewidth": 1.6,
-    "figure.dpi": 140, "savefig.facecolor": "white",
-})
-
-
-def save(figure, output, name):
-    # Without an alpha channel and with a quarter of the shades, which the eye
-    # cannot tell but which makes the files much smaller; and without the version
-    # of the library, so that equal pictures are equal files.
-    figure.canvas.draw()
-    pixels = np.asarray(figure.canvas.buffer_rgba())[:, :, :3].astype(int)
-    pixels = np.minimum((pixels + 2) // 4 * 4, 255).astype(np.uint8)
-    Image.fromarray(pixels).save(output / name, optimize=True)
-    plt.close(figure)
+from drawing import (BLUE, GREEN, GREY, ORANGE, RED, SKY, STRESS, nodal_average,
+                     save)
+from hertz import THESIS, HertzRun, peak, width
 
 
 def nodal_stress(data):
-    """The von Mises stress, which jumps between cells, averaged at nodes."""
-    _, node = np.unique(np.round(data["points"], 6), axis=0,
-                        return_inverse=True)
-    node = node.ravel()
-    stress = data["von_Mises_stress"]
-    return (np.bincount(node, stress) / np.bincount(node))[node]
+    return nodal_average(data["points"], data["von_Mises_stress"])
 
 
 def draw_body(axes, data, norm, line_width, cells_in=None):
@@ -264,16 +231,16 @@ def readme(run, output):
 
 def main():
     runs, output = Path(sys.argv[1]), Path(sys.argv[2])
-    default = Run(runs / "hertz")
+    default = HertzRun(runs / "hertz")
     body(default, output)
-    boundary_stresses({0.05: Run(runs / "F-0.05"), 0.4: default,
-                       1.0: Run(runs / "F-1")}, output)
-    fixed_point(Run(runs / "fixed-point"), output)
+    boundary_stresses({0.05: HertzRun(runs / "F-0.05"), 0.4: default,
+                       1.0: HertzRun(runs / "F-1")}, output)
+    fixed_point(HertzRun(runs / "fixed-point"), output)
     cycles({"default": default,
-            "V(3,3) truncated": Run(runs / "V33-truncated"),
-            "V(3,3) monotone": Run(runs / "V33-monotone"),
-            "W(3,3) truncated": Run(runs / "W33-truncated"),
-            "W(3,3) monotone": Run(runs / "W33-monotone")}, output)
+            "V(3,3) truncated": HertzRun(runs / "V33-truncated"),
+            "V(3,3) monotone": HertzRun(runs / "V33-monotone"),
+            "W(3,3) truncated": HertzRun(runs / "W33-truncated"),
+            "W(3,3) monotone": HertzRun(runs / "W33-monotone")}, output)
     readme(default, output)
 
 

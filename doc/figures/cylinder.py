@@ -1,0 +1,43 @@
+"""The runs of the cylinder scene in the terms of its contact boundary, and the
+published numbers that they are compared with."""
+
+import numpy as np
+
+from history import Run
+
+# Table 6.2 of the thesis: level, dof, contact, sticky, outer iterations, cycles
+# of Algorithms 2 and 3, rho_tau.
+THESIS = [(0, 27, None, None, None, None, None, None),
+          (1, 567, 6, 2, 5, 72, 23, 4.1e-2),
+          (2, 3723, 14, 4, 4, 63, 17, 2.2e-2),
+          (3, 10194, 46, 18, 5, 75, 18, 2.2e-2),
+          (4, 37935, 180, 56, 5, 87, 21, 4.3e-2),
+          (5, 92961, 684, 188, 6, 146, 32, 5.9e-2),
+          (6, 226500, 2728, 747, 6, 274, 70, 7.2e-2)]
+
+
+def angle(points):
+    """Degrees around the axis of the cylinder, from its lowest line."""
+    return np.degrees(np.arctan2(points[:, 0], -points[:, 1]))
+
+
+class CylinderRun(Run):
+    """The history of a run of the scene."""
+
+    def nodes(self, level=None):
+        """The contact nodes above the rod at x>0: angle, z, pressure, and the
+        tangential stress in the frame (around, along) the cylinder, and the
+        state."""
+        contact = self.contact[self.last if level is None else level]
+        here = contact["point"][:, 0] > 0.01
+        point, normal = contact["point"][here], contact["normal"][here]
+        traction = contact["force"][here] / contact["measure"][here, None]
+        around = np.stack([-normal[:, 1], normal[:, 0], 0 * normal[:, 0]], axis=1)
+        return {"angle": angle(point), "z": point[:, 2],
+                "pressure": -np.sum(traction * normal, axis=1),
+                "around": np.sum(traction * around, axis=1),
+                "along": traction[:, 2], "state": contact["state"][here]}
+
+    def failed(self, most):
+        """Whether the last level has used up all cycles that it was given."""
+        return self.levels["cycles"][-1] >= most
