@@ -636,16 +636,22 @@ namespace StepFriction2d
     // largest. There is no coarsening, so that interpolation to the next mesh
     // loses nothing. If there is no error at all, nothing is marked and the run
     // is complete.
-    const bool any_marked = mark_by_maximum(triangulation,
-                                            estimate.cell_errors,
-                                            parameters.refinement.marking) > 0;
+    bool any_marked = mark_by_maximum(triangulation,
+                                      estimate.cell_errors,
+                                      parameters.refinement.marking) > 0;
     // Optionally, every cell at the boundary with a vertex in contact is
     // refined besides. The zone of contact then has the same mesh width all
     // over, at a price: this is not optimal for the energy, and the mesh gets
     // coarse so quickly with depth that the pressure carries a slight ripple.
     if (parameters.refinement.contact_zone)
-      mark_contact_zone(
+      any_marked |= mark_contact_zone(
         dof_handler, *nodal_constraints, *contact_boundary, *state);
+    if (!any_marked)
+      console.note(
+        state->n_contact() > 0
+          ? "Nothing is left to refine: there is no error."
+          : "Nothing is left to refine: there is no error, and no node "
+            "in contact. If there should be, start with a finer mesh.");
     return any_marked;
   }
 

@@ -777,12 +777,18 @@ namespace StepFriction3d
         return true;
       }
     // There is no coarsening, and nothing is marked if there is no error.
-    const bool any_marked = mark_by_maximum(triangulation,
-                                            estimate.cell_errors,
-                                            parameters.refinement.marking) > 0;
+    bool any_marked = mark_by_maximum(triangulation,
+                                      estimate.cell_errors,
+                                      parameters.refinement.marking) > 0;
     if (parameters.refinement.contact_zone)
-      mark_contact_zone(
+      any_marked |= mark_contact_zone(
         dof_handler, *nodal_constraints, *contact_boundary, *state);
+    if (!any_marked)
+      console.note(
+        state->n_contact() > 0
+          ? "Nothing is left to refine: there is no error."
+          : "Nothing is left to refine: there is no error, and no node "
+            "in contact. If there should be, start with a finer mesh.");
     return any_marked;
   }
 

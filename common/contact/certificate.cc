@@ -118,10 +118,11 @@ namespace Friction
         const auto   u_T   = tangential_components<dim>(node, u);
         double       norm = 0, slip_norm = 0;
         for (unsigned int t = 0; t < node.n_free_tangents; ++t)
-          {
-            norm += r_T[t] * r_T[t];
-            slip_norm += u_T[t] * u_T[t];
-          }
+          norm += r_T[t] * r_T[t];
+        // A prescribed component takes part in the slip; the force in its
+        // direction is a reaction, of which friction is but a part.
+        for (const double component : u_T)
+          slip_norm += component * component;
         norm      = std::sqrt(norm) / force_scale;
         slip_norm = std::sqrt(slip_norm);
         raise(result.cone, norm - bound);

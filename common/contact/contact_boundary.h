@@ -118,6 +118,24 @@ namespace Friction
     return sum;
   }
 
+  /**
+   * The force of the obstacle on the body at a contact node, from the residual
+   * f - A u. In a direction in which the displacement is prescribed the
+   * residual is the reaction of whatever holds the node there, and no contact
+   * force.
+   */
+  template <int dim>
+  Tensor<1, dim>
+  contact_force(const ContactNode<dim> &p, const VectorType &residual)
+  {
+    Tensor<1, dim> force;
+    for (unsigned int e = 0; e <= p.n_free_tangents; ++e)
+      for (unsigned int d = 0; d < dim; ++d)
+        force -=
+          p.frame[e][d] * residual.local_element(dim * p.node + d) * p.frame[e];
+    return force;
+  }
+
   /** The tangential components of the value at a contact node, in its frame. */
   template <int dim>
   std::array<double, dim - 1>

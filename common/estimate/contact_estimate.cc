@@ -1,4 +1,7 @@
+#include <common/compatibility.h>
 #include <common/estimate/contact_estimate.h>
+
+#include <deal.II/base/mpi.h>
 
 #include <vector>
 
@@ -51,12 +54,13 @@ namespace Friction
 
 
   template <int dim>
-  void
+  bool
   mark_contact_zone(const DoFHandler<dim>       &dof_handler,
                     const NodalConstraints<dim> &constraints,
                     const ContactBoundary<dim>  &contact_boundary,
                     const ContactState          &state)
   {
+    bool              any_marked = false;
     std::vector<bool> touches(constraints.n_nodes(), false);
     for (unsigned int p = 0; p < contact_boundary.size(); ++p)
       touches[contact_boundary[p].node] = state.in_contact(p);
@@ -64,7 +68,13 @@ namespace Friction
       if (cell->is_locally_owned() && cell->at_boundary())
         for (const unsigned int v : cell->vertex_indices())
           if (touches[constraints.node_of_dof(cell->vertex_dof_index(v, 0))])
-            cell->set_refine_flag();
+            {
+              cell->set_refine_flag();
+              any_marked = true;
+            }
+    return Utilities::MPI::max(any_marked ? 1 : 0,
+                               Compatibility::mpi_communicator(dof_handler)) >
+      0;
   }
 
 
@@ -77,7 +87,7 @@ namespace Friction
                                        const ContactBoundary<2> &,
                                        const VectorType &,
                                        const VectorType &);
-  template void mark_contact_zone(const DoFHandler<2> &,
+  template bool mark_contact_zone(const DoFHandler<2> &,
                                   const NodalConstraints<2> &,
                                   const ContactBoundary<2> &,
                                   const ContactState &);
@@ -90,7 +100,7 @@ namespace Friction
                                        const ContactBoundary<3> &,
                                        const VectorType &,
                                        const VectorType &);
-  template void mark_contact_zone(const DoFHandler<3> &,
+  template bool mark_contact_zone(const DoFHandler<3> &,
                                   const NodalConstraints<3> &,
                                   const ContactBoundary<3> &,
                                   const ContactState &);

@@ -38,10 +38,10 @@ namespace Friction
 
   /**
    * Sets the refinement flag of every cell at the boundary that has a vertex in
-   * contact.
+   * contact. Returns whether there is one.
    */
   template <int dim>
-  void mark_contact_zone(const DoFHandler<dim>       &dof_handler,
+  bool mark_contact_zone(const DoFHandler<dim>       &dof_handler,
                          const NodalConstraints<dim> &constraints,
                          const ContactBoundary<dim>  &contact_boundary,
                          const ContactState          &state);

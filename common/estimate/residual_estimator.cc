@@ -174,9 +174,8 @@ namespace Friction
 
 
 
-    // A cell that merely moves has stresses that are nothing but rounding, and
-    // what the solver's tolerance leaves. The energy that displacements of this
-    // size could have tells them from others.
+    // A cell that merely moves has stresses that are nothing but rounding. The
+    // energy that displacements of this size could have tells them from others.
     template <int dim>
     double
     Estimator<dim>::square_of_rounding(const CellIterator &cell) const

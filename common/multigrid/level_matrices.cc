@@ -336,7 +336,7 @@ namespace Friction
   std::size_t
   LevelMatrices<dim>::memory_consumption() const
   {
-    std::size_t bytes = 0;
+    std::size_t bytes = slot_of_finer_column.capacity() * sizeof(unsigned int);
     for (unsigned int k = 0; k < matrices.size(); ++k)
       bytes += matrices[k].memory_consumption() +
         inverses[k].capacity() * sizeof(NodeBlock<dim>) +

@@ -46,6 +46,8 @@ namespace Friction
     /// Largest nodal contact pressure: nodal normal force over nodal measure.
     double max_pressure = 0.;
 
+    /// Of the zones of contact and of stick. 2D: half of their measure. 3D: the
+    /// radius of the circle of their area.
     double contact_half_width = 0.;
     double stick_half_width   = 0.;
 

@@ -57,11 +57,8 @@ namespace Friction
         row.gap     = node.gap;
         row.measure = node.measure;
         for (unsigned int d = 0; d < dim; ++d)
-          {
-            row.displacement[d] =
-              displacement.local_element(dim * node.node + d);
-            row.force[d] = -report.residual.local_element(dim * node.node + d);
-          }
+          row.displacement[d] = displacement.local_element(dim * node.node + d);
+        row.force = contact_force(node, report.residual);
         row.state = !state.in_contact(p) ? 0 : state.sticks(p) ? 2 : 1;
         records.contact.push_back(row);
 

@@ -22,9 +22,9 @@ namespace Friction
    * Turns what the solver has found on a level into records.
    *
    * The solver's residual is $f-Au$, so that the force of the obstacle on the
-   * body, $R=Au-f$, is its negative; $\tau(p)=-R(p)\cdot n(p)$ is positive in
-   * contact, and over the nodal measure a pressure. From the nodes are summed
-   * up
+   * body, $R=Au-f$, is its negative (see contact_force()); $\tau(p)=-R(p)\cdot
+   * n(p)$ is positive in contact, and over the nodal measure a pressure. From
+   * the nodes are summed up
    * - the numbers of nodes in contact, and sticking: flags of the state;
    * - the normal forces, and the vectors of the tangential forces. Where a
    *   scene is symmetric, the latter cancel, and a norm near zero does not mean

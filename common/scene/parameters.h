@@ -80,7 +80,7 @@ namespace Friction
   {
     none,  ///< nothing in the way
     plane, ///< a half space
-    rods   ///< discs in two dimensions, infinite circular rods in three
+    rods   ///< discs in two dimensions, circular rods in three
   };
 
   enum class ContactNormal

@@ -14,12 +14,12 @@ namespace Friction
     VectorType tractions(constraints.partitioner());
     for (unsigned int p = 0; p < contact.size(); ++p)
       if (state.in_contact(p) || state.normal_force(p) > 0)
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            const unsigned int i = dim * contact[p].node + d;
-            tractions.local_element(i) =
-              -residual.local_element(i) / contact[p].measure;
-          }
+        {
+          const Tensor<1, dim> force = contact_force(contact[p], residual);
+          for (unsigned int d = 0; d < dim; ++d)
+            tractions.local_element(dim * contact[p].node + d) =
+              force[d] / contact[p].measure;
+        }
     return tractions;
   }
 

@@ -128,18 +128,24 @@ namespace Friction
             const auto              a    = tangential_components<dim>(node, u);
             const auto              b    = tangential_components<dim>(node, v);
             double                  uu = 0, uv = 0;
-            for (unsigned int t = 0; t < node.n_free_tangents; ++t)
+            // What is prescribed does not change, but takes part in the slip.
+            double free = 0;
+            for (unsigned int t = 0; t < dim - 1; ++t)
               {
                 uu += a[t] * a[t];
-                uv += a[t] * b[t];
+                if (t < node.n_free_tangents)
+                  {
+                    uv += a[t] * b[t];
+                    free += a[t] * a[t];
+                  }
               }
-            if (uu + uv >= 0 || uu == 0)
+            if (uu + uv >= 0 || free == 0)
               continue;
             ++n_changed;
             for (unsigned int t = 1; t <= node.n_free_tangents; ++t)
               for (unsigned int d = 0; d < dim; ++d)
                 v.local_element(dim * node.node + d) -=
-                  (uu + uv) / uu * a[t - 1] * node.frame[t][d];
+                  (uu + uv) / free * a[t - 1] * node.frame[t][d];
           }
     return n_changed;
   }

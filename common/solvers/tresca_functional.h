@@ -39,9 +39,9 @@ namespace Friction
 
     /**
      * Changes @p v such that at each sliding node $(u+v)_T\cdot u_T\ge0$: no
-     * node slips back beyond where it came from (prescribed components do not
-     * count, as they do not change). Returns the number of nodes where it had
-     * to.
+     * node slips back beyond the line through $u_T=0$ perpendicular to its
+     * slip. Prescribed components stay as they are. Returns the number of nodes
+     * where it had to.
      */
     unsigned int keep_slip(VectorType         &v,
                            const VectorType   &u,

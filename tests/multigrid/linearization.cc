@@ -514,10 +514,18 @@ namespace
     unsigned int  p       = 0;
     while (it.phases[p] != slip || contact[p].n_free_tangents < 2)
       ++p;
-    const ContactNode<3> &node  = contact[p];
-    const Tensor<1, 3>    start = slip_of<3>(node, it.u);
-    const Tensor<1, 3>    across =
-      cross_product_3d(node.normal(), start / start.norm());
+    const ContactNode<3> &node      = contact[p];
+    const Tensor<1, 3>    original  = slip_of<3>(node, it.u);
+    const Tensor<1, 3>    direction = original / original.norm();
+    const Tensor<1, 3>    across = cross_product_3d(node.normal(), direction);
+    const double          stiffness =
+      trace<3>(problem.matrix().block(problem.matrix().row_begin(node.node))) /
+      3.;
+
+    // A slip so small that omega'' is far larger than the stiffness, and is
+    // compared with itself alone.
+    const double       bound = friction * it.state.normal_force(p);
+    const Tensor<1, 3> start = bound / (1e6 * stiffness) * direction;
 
     // The curvature for a slip at that node, by an object that may remember.
     VectorType   u(it.u);
@@ -532,7 +540,7 @@ namespace
     const auto curvature = [&](Linearization<3>   &linearization,
                                const Tensor<1, 3> &slip) {
       u = it.u;
-      shift<3>(u, node, slip - start);
+      shift<3>(u, node, slip - original);
       linearization.update(u, state);
       return to_matrix<3>(linearization.truncation().curvature(node.node));
     };
@@ -564,6 +572,17 @@ namespace
       }
     check(kept, "omega'' is kept if it changes by less than 10 %");
     check(replaced, "computed anew if it changes by more");
+
+    // A slip so large that turning it costs hardly anything compared with the
+    // stiffness that omega'' is added to.
+    {
+      const Tensor<1, 3> large         = bound / (1e-3 * stiffness) * direction;
+      Linearization<3>   linearization = make();
+      const auto         first         = curvature(linearization, large);
+      check(curvature(linearization, 2. * large) == first &&
+              curvature(linearization, start) == fresh(start),
+            "kept while it is small compared with the stiffness");
+    }
 
     // Small changes one after the other.
     Linearization<3> linearization = make();
@@ -597,9 +616,8 @@ namespace
 
     // Hardly any slip, and none at all.
     state                = it.state;
-    const double largest = 1e8 *
-      trace<3>(problem.matrix().block(problem.matrix().row_begin(node.node)));
-    double cutoff = 0, below = 0;
+    const double largest = 1e8 * stiffness;
+    double       cutoff = 0, below = 0;
     for (const double size : {1e-12, 1e-20, 1e-100, 0.})
       {
         u = it.u;
