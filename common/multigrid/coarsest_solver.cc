@@ -78,8 +78,24 @@ namespace Friction
       }
     matrix.compress(VectorOperation::insert);
 
-    solver = std::make_unique<TrilinosWrappers::SolverDirect>(control);
-    solver->initialize(matrix);
+    // Truncated functions of several nodes may have become dependent. Residuals
+    // have no part in the direction that is lost, so that it does not matter
+    // what stiffness it is given.
+    const auto factorize_matrix = [&]() {
+      solver = std::make_unique<TrilinosWrappers::SolverDirect>(control);
+      solver->initialize(matrix);
+    };
+    try
+      {
+        factorize_matrix();
+      }
+    catch (const ExceptionBase &)
+      {
+        for (unsigned int i = 0; i < dim * B.n_rows(); ++i)
+          matrix.add(i, i, 1e-10 * scale);
+        matrix.compress(VectorOperation::add);
+        factorize_matrix();
+      }
     version = level_matrices.coarsest_version();
   }
 

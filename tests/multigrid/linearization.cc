@@ -16,8 +16,8 @@
 // that they measure something.
 //
 // The level matrices depend on omega'', so that it is computed anew only where
-// it has changed by more than a tenth: that, too, is checked, and that the
-// changes do not add up.
+// it has changed by more than a tenth, of itself and of the stiffness that it
+// is added to: that, too, is checked, and that the changes do not add up.
 
 #include <common/multigrid/linearization.h>
 #include <common/solvers/tresca_functional.h>

@@ -389,16 +389,12 @@ namespace
     smoother.sweep(v, disc.forces, after, coulomb, false);
     smoother.sweep(v, disc.forces, after, coulomb, true);
     problem.matrix().residual(r.begin(), disc.forces.begin(), u.begin());
-    Certificate certificate = make_certificate<dim>(
+    const Certificate certificate = make_certificate<dim>(
       u, r, problem.constraints(), problem.contact(), state, friction, coulomb);
     v -= u;
 
-    // Sliding nodes once more: in 3D a part of the slip may be prescribed,
-    // which the certificate does not know of.
+    // Sliding nodes once more: in 3D a part of the slip may be prescribed.
     double direction = 0;
-    for (const auto &p : problem.contact())
-      if (dim == 3 && p.n_free_tangents < dim - 1)
-        certificate.slip = 0;
     for (unsigned int p = 0; p < state.size(); ++p)
       if (!state.sticks(p) && state.normal_force(p) > 0)
         {
