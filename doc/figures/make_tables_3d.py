@@ -211,7 +211,7 @@ def checks(runs):
     middle = (np.abs(nodes["z"] - 1) < 1e-6) & (nodes["state"] > 0)
     theta = nodes["angle"][middle]
     rows.append(f" contact halfway along the cylinder: {theta.min():.2f} to "
-                f"{theta.max():.2f} degrees")
+                f"{theta.max():.2f} degrees, {middle.sum()} nodes")
     stick = nodes["state"] == 2
     rows.append(f" stick: {nodes['angle'][stick].min():.2f} to "
                 f"{nodes['angle'][stick].max():.2f} degrees, z from "
@@ -236,8 +236,9 @@ def checks(runs):
                 f"{np.abs(z[state == 2]).max():.3f}; "
                 f"{100 * inward[state == 1].mean():.0f} percent of the sliding "
                 "nodes move inwards")
-    rows.append(" block, cycles by level: " + " ".join(
-        map(str, Run(runs / "block").levels["cycles"])))
+    for name in ("crossing-rods", "block"):
+        rows.append(f" {name}, cycles from level 0: " + " ".join(
+            map(str, Run(runs / name).levels["cycles"])))
     converged = []
     for path in sorted(runs.glob("*/history.h5")):
         with h5py.File(path) as file:
