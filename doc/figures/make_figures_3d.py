@@ -13,7 +13,7 @@ from matplotlib.patches import Patch, Polygon
 
 import vtu
 from cylinder import THESIS, CylinderRun, angle
-from drawing import (BLUE, GREEN, GREY, ORANGE, PINK, RED, SKY, STRESS,
+from drawing import (BLUE, GREY, ORANGE, PINK, RED, SKY, STRESS,
                      nodal_average, save)
 from history import Run
 
