@@ -3,6 +3,7 @@ published numbers that they are compared with."""
 
 import numpy as np
 
+import vtu
 from history import Run
 
 # Table 6.2 of the thesis: level, dof, contact, sticky, outer iterations, cycles
@@ -38,6 +39,26 @@ class CylinderRun(Run):
                 "around": np.sum(traction * around, axis=1),
                 "along": traction[:, 2], "state": contact["state"][here]}
 
-    def failed(self, most):
+    def halfway(self):
+        """The contact nodes above the rod at x>0 at z=1, by angle."""
+        nodes = self.nodes()
+        row = np.flatnonzero(np.abs(nodes["z"] - 1) < 1e-6)
+        row = row[np.argsort(nodes["angle"][row])]
+        return {name: values[row] for name, values in nodes.items()}
+
+    def gave_up(self, most):
         """Whether the last level has used up all cycles that it was given."""
         return self.levels["cycles"][-1] >= most
+
+
+def largest_angles(data):
+    """The largest angle, in degrees, in the faces of each cell, and the middles
+    of the cells."""
+    corners = data["points"][data["cells"]].astype(float)
+    faces = corners[:, vtu.FACES]
+    after = np.roll(faces, -1, axis=2) - faces
+    before = np.roll(faces, 1, axis=2) - faces
+    cosine = (np.sum(after * before, axis=-1) / np.linalg.norm(after, axis=-1)
+              / np.linalg.norm(before, axis=-1))
+    return (np.degrees(np.arccos(cosine)).max(axis=(1, 2)),
+            corners.mean(axis=1))

@@ -13,7 +13,7 @@ from matplotlib.patches import Patch, Polygon
 
 import vtu
 from cylinder import THESIS, CylinderRun, angle
-from drawing import (BLUE, GREEN, GREY, ORANGE, PINK, RED, SKY, STRESS,
+from drawing import (BLUE, GREY, ORANGE, PINK, RED, SKY, STRESS,
                      nodal_average, save)
 from history import Run
 
@@ -40,9 +40,7 @@ def surface(data, length=2.0):
     mean of the von Mises stress at their corners."""
     points = data["points"]
     stress = nodal_average(points, data["von_Mises_stress"])
-    faces = data["cells"][:, [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4],
-                              [2, 3, 7, 6], [0, 3, 7, 4], [1, 2, 6, 5]]]
-    faces = faces.reshape(-1, 4)
+    faces = data["cells"][:, vtu.FACES].reshape(-1, 4)
     z = points[faces][:, :, 2]
     r = np.hypot(points[faces][:, :, 0], points[faces][:, :, 1])
     here = ((z < 1e-6).all(1) | (z > length - 1e-6).all(1)
@@ -180,8 +178,9 @@ def draw_phases(axes, x, y, state, width, height):
         facecolors=PHASES[state], edgecolors="none", antialiased=False))
 
 
-def phases(run, output):
-    """Which nodes slide and stick above one rod, and the stresses across it."""
+def phases(run, other, output):
+    """Which nodes slide and stick above one rod, and the stresses across it;
+    the normal stress on another mesh, too."""
     nodes = run.nodes()
     limits = (27, 33)
     here = (nodes["angle"] > limits[0]) & (nodes["angle"] < limits[1])
@@ -206,24 +205,25 @@ def phases(run, output):
     for x in (27.5, 32.4):
         plan.text(x, 1, "open", ha="center", va="center", color=GREY)
 
-    row = np.abs(nodes["z"] - 1) < 1e-6
-    order = np.argsort(nodes["angle"][row])
-    theta, pressure, state = (nodes[name][row][order]
-                              for name in ("angle", "pressure", "state"))
-    shear = np.hypot(nodes["around"], nodes["along"])[row][order]
+    row = run.halfway()
+    theta, pressure, state = row["angle"], row["pressure"], row["state"]
+    shear = np.hypot(row["around"], row["along"])
     sticking = theta[state == 2]
     profile.axvspan(sticking[0] - 0.117, sticking[-1] + 0.117, color="0.9")
     profile.text(sticking.mean(), 0.001, "sticks", ha="center", color=GREY)
     profile.plot(theta, pressure, color=BLUE, label=r"$|\sigma_n|$")
+    row = other.halfway()
+    profile.plot(row["angle"], row["pressure"], color=SKY, linewidth=0.9,
+                 label=r"$|\sigma_n|$, one hexahedron")
     profile.plot(theta, 0.4 * pressure, "--", color="k", linewidth=1,
                  label=r"$\mathcal{F}|\sigma_n|$")
     profile.plot(theta, shear, color=RED, label=r"$|\sigma_T|$")
     profile.set_xlim(limits)
-    profile.set_ylim(0, None)
+    profile.set_ylim(0, 0.08)
     profile.set_xlabel("degrees around the axis")
     profile.set_ylabel("stress / E")
     profile.set_title("stresses halfway along the cylinder, $z=1$")
-    profile.legend(loc="upper right")
+    profile.legend(loc="upper right", ncol=2, fontsize=9)
     save(figure, output, "phases.png")
 
 
@@ -341,12 +341,10 @@ def truncation(runs, output, most):
                       label={"phases without second order":
                              r"phases without second order $\omega''$"}.get(
                                  name, name))
-            if run.failed(most):
-                axes.plot(dofs[-1], count[-1], "X", color="k", markersize=9,
-                          zorder=3)
-                axes.annotate("fails", (dofs[-1], count[-1]), xytext=(-9, 0),
-                              textcoords="offset points", ha="right",
-                              va="center")
+            if run.gave_up(most):
+                axes.annotate(f"more than {most}", (dofs[-1], count[-1]),
+                              xytext=(-9, 2), textcoords="offset points",
+                              ha="right", va="center", color=color)
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.set_ylim(9, 125)
@@ -369,7 +367,7 @@ def main():
     large = CylinderRun(runs / "large")
     overview(CylinderRun(runs / "cylinder"), output)
     tangential_stress(large, output)
-    phases(large, output)
+    phases(large, CylinderRun(runs / "one-cell"), output)
     crossing_rods(Run(runs / "crossing-rods"), output)
     fixed_point(CylinderRun(runs / "large-fixed-point"), output)
     cycles({"O-grid": (large, BLUE, "o"),

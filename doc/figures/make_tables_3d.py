@@ -10,7 +10,8 @@ import h5py
 import numpy as np
 
 import tables
-from cylinder import THESIS, CylinderRun
+import vtu
+from cylinder import THESIS, CylinderRun, angle, largest_angles
 from history import Run
 from tables import show
 
@@ -93,8 +94,8 @@ def truncation(runs):
         for run in histories:
             if k > run.last:
                 text = "-"
-            elif k == run.last and run.failed(MOST):
-                text = "fails"
+            elif k == run.last and run.gave_up(MOST):
+                text = f">{MOST}"
             else:
                 text = run.levels["cycles"][k]
             rows[-1] += f"{text:>12}"
@@ -194,6 +195,14 @@ def checks(runs):
                     f"{jac} and {gs}, {100 * gs / jac:.0f} percent")
     jac, gs = (sum(row[column] for row in THESIS[1:]) for column in (5, 6))
     rows.append(f"    thesis: {jac} and {gs}, {100 * gs / jac:.0f} percent")
+    for title, name in (("O-grid", "large"), ("one hexahedron", "one-cell")):
+        run = CylinderRun(runs / name)
+        data = vtu.read(run.directory / f"body-{run.last:02d}.0000.vtu")
+        angles, middles = largest_angles(data)
+        above = ((np.abs(np.abs(angle(middles)) - 30) < 4) &
+                 (np.hypot(middles[:, 0], middles[:, 1]) > 0.93))
+        rows.append(f" largest angles of cells, {title}: {angles.max():.1f} of "
+                    f"all, {np.median(angles[above]):.0f} typically above rods")
     counts = [Run(runs / f"W33-monotone{name}").levels["cycles"]
               for name in ("-fixed-point", "")]
     for title, count in zip(("2", "3"), counts):
@@ -211,7 +220,7 @@ def checks(runs):
     middle = (np.abs(nodes["z"] - 1) < 1e-6) & (nodes["state"] > 0)
     theta = nodes["angle"][middle]
     rows.append(f" contact halfway along the cylinder: {theta.min():.2f} to "
-                f"{theta.max():.2f} degrees")
+                f"{theta.max():.2f} degrees, {middle.sum()} nodes")
     stick = nodes["state"] == 2
     rows.append(f" stick: {nodes['angle'][stick].min():.2f} to "
                 f"{nodes['angle'][stick].max():.2f} degrees, z from "
@@ -222,6 +231,9 @@ def checks(runs):
         shares.append(f"{100 * level['sticky_nodes'] / level['contact_nodes']:.0f}"
                       f" percent for F={friction}")
     rows.append(" sticking nodes among those in contact: " + ", ".join(shares))
+    count = Run(runs / "without-second-order-long").levels["cycles"]
+    rows.append(" phases without second order, monotone, cycles from level 0: " +
+                " ".join(map(str, count)))
     cross = Run(runs / "crossing-rods")
     contact = cross.contact[cross.last]
     here = (contact["point"][:, 2] < 1) & (contact["state"] > 0)
@@ -236,13 +248,14 @@ def checks(runs):
                 f"{np.abs(z[state == 2]).max():.3f}; "
                 f"{100 * inward[state == 1].mean():.0f} percent of the sliding "
                 "nodes move inwards")
-    rows.append(" block, cycles by level: " + " ".join(
-        map(str, Run(runs / "block").levels["cycles"])))
+    for name in ("crossing-rods", "block"):
+        rows.append(f" {name}, cycles from level 0: " + " ".join(
+            map(str, Run(runs / name).levels["cycles"])))
     converged = []
     for path in sorted(runs.glob("*/history.h5")):
         with h5py.File(path) as file:
-            fails = file["levels/cycles"][-1] == MOST
-            converged.append(file["levels/certificate"][:-1 if fails else None])
+            gave_up = file["levels/cycles"][-1] == MOST
+            converged.append(file["levels/certificate"][:-1 if gave_up else None])
     rows.append(" largest certificate on any level that has converged, of any run "
                 f"here: {np.concatenate(converged).max():.0e}")
     return "\n".join(rows)

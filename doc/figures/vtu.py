@@ -13,6 +13,11 @@ TYPES = {"Float32": "<f4", "Float64": "<f8", "Int32": "<i4", "UInt32": "<u4",
          "Int64": "<i8", "UInt64": "<u8", "UInt8": "u1", "Int8": "i1"}
 
 
+# The faces of a hexahedron, corners in cyclic order.
+FACES = np.array([[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4],
+                  [2, 3, 7, 6], [0, 3, 7, 4], [1, 2, 6, 5]])
+
+
 def decode(text, dtype):
     """The array in one binary DataArray."""
     text = "".join(text.split())
