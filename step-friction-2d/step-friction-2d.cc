@@ -464,9 +464,10 @@ namespace StepFriction2d
   //   (<code>Linearization</code>, <code>Truncation</code>);
   // - one linear multigrid cycle for a correction (<code>CoarseCycle</code>,
   //   on the Galerkin products in <code>LevelMatrices</code>);
-  // - projection to the admissible displacements and line search
-  //   (<code>TrescaFunctional</code>), along the correction recombined with the
-  //   last step (<code>Recombination</code>);
+  // - projection to the admissible displacements, and to those that reverse
+  //   the slip of no node, and line search (<code>TrescaFunctional</code>),
+  //   along the correction recombined with the last step
+  //   (<code>Recombination</code>);
   // - the energy that all of them agree on (<code>TrescaFunctional</code>).
   //
   // <i>Where is the friction cone?</i> In the first part, and nowhere else.

@@ -582,8 +582,8 @@ namespace StepFriction3d
   // $\omega''_p$ is much larger than the elastic stiffness, a gradient across
   // the slip then leads to a correction that is too large by about that factor.
   // Without a line search nothing keeps it from raising the energy, and
-  // convergence was lost in some of the problems of Remark 6.7; try it in the
-  // scene <code>cylinder</code>, together with <code>Solver/Coarse correction =
+  // the iteration takes hundreds of cycles (Remark 6.7); try it in the scene
+  // <code>cylinder</code>, together with <code>Solver/Coarse correction =
   // monotone</code>. With a line search the energy falls in any case, but the
   // correction is shortened as a whole to what its worst nodes can bear. The
   // third variant, <code>contact</code>, is that of the three-dimensional
