@@ -169,9 +169,9 @@ namespace
 
 
 
-  // Radius and peak against what the force says, up to the error of the mesh and
-  // that of the finite body. Most of the error in L2 comes from the nodes next
-  // to the rim, where the pressure has an infinite slope.
+  // Radius and peak against what the force says, up to the error of the mesh
+  // and that of the finite body. Most of the error in L2 comes from the nodes
+  // next to the rim, where the pressure has an infinite slope.
   void
   check_zone(const Measured &m, const double mesh_error)
   {

@@ -1,7 +1,7 @@
 // Round bodies against a direct solution of the discrete law on the same mesh,
 // with normals and gaps from closed forms: two cylinders on rods, parallel to
 // them and across, and the half ball. Then what is known of the cylinders on
-// finer meshes: mirror symmetry, forces and moments in balance, and cycles that
+// finer meshes: mirror symmetry, balance of forces, and cycles that
 // do not grow.
 
 #include <functional>
@@ -61,14 +61,12 @@ namespace
     parallel_rods.radial = [](const Vector &x) {
       return Vector(x[0], x[1], 0);
     };
-    // Two rods of length 1.98.
     parallel_rods.gap = [](const Vector &x, const Vector &n) {
       double gap = infinity;
-      if (std::abs(x[2] - 1) <= .99)
-        for (const double c : {-.75, .75})
-          gap = std::min(gap,
-                         distance_to_rod({x[0] - c, x[1] + .75 * std::sqrt(3.)},
-                                         n.head<2>()));
+      for (const double c : {-.75, .75})
+        gap = std::min(
+          gap,
+          distance_to_rod({x[0] - c, x[1] + .75 * std::sqrt(3.)}, n.head<2>()));
       return gap;
     };
 
@@ -295,8 +293,11 @@ namespace
     return n_different;
   }
 
-  // Contact forces and the reactions at held nodes, and their moments about
-  // the origin: the resultants over the sums of absolute values.
+  // Contact forces and the reactions at held nodes, and, if there are no
+  // hanging nodes, their moments about the origin: the resultants over the sums
+  // of absolute values. Where nodes hang on a curved boundary they do not lie
+  // in the middle of their masters, but are displaced like the middle, so that
+  // a small rotation is no longer free of strain, nor are moments in balance.
   double
   imbalance(const NestedIteration<3> &iteration)
   {
@@ -307,9 +308,11 @@ namespace
       loaded[node.node] = true;
 
     Tensor<1, 3> force, moment;
-    double       sum = 0;
+    double       sum           = 0;
+    bool         nothing_hangs = true;
     for (unsigned int i = 0; i < points.size(); ++i)
       {
+        nothing_hangs = nothing_hangs && !d.constraints->is_hanging(i);
         if (!loaded[i] && !d.constraints->is_fixed(i))
           continue;
         Tensor<1, 3> f;
@@ -319,7 +322,7 @@ namespace
         moment += cross_product_3d(points[i], f);
         sum += f.norm();
       }
-    return std::max(force.norm(), moment.norm()) / sum;
+    return std::max(force.norm(), nothing_hangs ? moment.norm() : 0.) / sum;
   }
 
   void
@@ -352,7 +355,7 @@ namespace
     check(n_different == 0, "nodes and their states are symmetric");
     check_below(
       largest_difference, 1e-7, "displacements and forces are symmetric");
-    check_below(largest_imbalance, 1e-8, "forces and moments are in balance");
+    check_below(largest_imbalance, 1e-8, "what acts on the body is in balance");
     check_below(n_cycles, 15, "cycles on each level from the second on");
   }
 } // namespace
@@ -368,10 +371,14 @@ main(int argc, char **argv)
 
   run("cylinder, uniform refinement",
       "cylinder",
-      {"Refinement/Strategy=uniform", "Refinement/Maximum dofs=4000"});
+      {"Refinement/Strategy=uniform",
+       "Refinement/Initial refinements=0",
+       "Refinement/Maximum dofs=4000"});
   run("cylinder, adaptive refinement",
       "cylinder",
-      {"Refinement/Maximum dofs=15000"});
+      {"Refinement/Initial refinements=0",
+       "Refinement/Marking=0.5",
+       "Refinement/Maximum dofs=15000"});
   run("crossing-rods, adaptive refinement",
       "crossing-rods",
       {"Refinement/Maximum dofs=15000"});
