@@ -335,19 +335,15 @@ namespace StepFriction3d
   // <i>Data that do not fit together.</i> The scene <code>cylinder</code> is
   // that of the thesis. A cylinder lies on two rods, and is pushed down by
   // holding its end faces at $u=(0,-0.01,0)$. The rims of the end faces belong
-  // to the mantle as well, and where a rod is as long as the cylinder, a few
-  // nodes of them, in four spots, are prescribed to be inside it. Their
-  // neighbours along the mantle must not be. So along a short arc, $u_n$ jumps
-  // from the prescribed value to the gap. A function with a jump along a curve
-  // in the boundary is not the trace of a displacement with finite energy: it
-  // only just fails, the energy grows like $\log(1/h)$. Each mesh has a
-  // solution, but its stress at the four spots tends to nothing in particular.
-  // We do not want to get into this by mistake, and such nodes are an error in
-  // the scene, unless it says <code>Contact/Ignore prescribed penetration =
-  // true</code>. Then these nodes are held as prescribed and, like all nodes
-  // that cannot move, are no contact nodes. Rods that end a little before the
-  // cylinder does have the same effect, as long as cells are longer than what
-  // is missing.
+  // to the mantle as well, and a few nodes of them, in four spots, are
+  // prescribed to be inside a rod. Their neighbours along the mantle must not
+  // be. So along a short arc $u_n$ jumps, and a function with a jump along a
+  // curve in the boundary only just fails to be the trace of a displacement
+  // with finite energy, which grows like $\log(1/h)$. We do not want to get
+  // into this by mistake: such nodes are an error in the scene, unless it says
+  // <code>Contact/Ignore prescribed penetration = true</code>. Then they are
+  // held as prescribed and, like all nodes that cannot move, are no contact
+  // nodes.
   template <int dim>
   void
   ContactProblem<dim>::setup_contact_boundary()
@@ -509,44 +505,16 @@ namespace StepFriction3d
   // direction of slip is not that of $b$ unless $A$ is a multiple of the
   // identity, and the equation is nonlinear.
   //
-  // In the eigenbasis of $A$, with eigenvalues $\lambda_1\ge\lambda_2$, write
-  // $v=Sn$ with $S=|v|$ and $|n|=1$. Then
-  // @f[
-  //   (S\lambda_i+s)\,n_i=b_i,\qquad i=1,2.
-  // @f]
-  // Eliminating $S$ leaves a scalar equation for the direction, $t=|n_2/n_1|$:
-  // @f[
-  //   \lambda_2|b_1|\,t+(\lambda_1-\lambda_2)\,s\,\frac{t}{\sqrt{1+t^2}}
-  //   =\lambda_1|b_2|.
-  // @f]
-  // Its left side grows with $t$, so there is one solution, and there are close
-  // bounds to start from: four steps of an iteration of third order suffice for
-  // all of the problems in <code>tests/contact/local_problem_3d.cc</code>. The
-  // amount of slip then follows from the square of the inclusion,
-  // @f[
-  //   |b|^2-s^2=2sS\,n^TAn+S^2|An|^2,
-  // @f]
-  // a quadratic equation in $S$ without cancellation. Nothing special happens
-  // when the slip is tiny, since the direction does not vanish with it.
-  //
-  // This is where the obvious method fails, Newton's for $v$ (Remark 6.6). Its
-  // matrix is $A+s(I-nn^T)/|v|$: extremely stiff across the slip, and not at
-  // all affected by friction along it. From the displacement that the node had
-  // before, or from a small one, a node that has to turn is sent straight
-  // through $v=0$ to the other side. Damping shortens the step, again and
-  // again, and the iterates run into $v=0$, where the energy has a kink but no
-  // minimum. They do so although the energy falls in every step. The same test
-  // shows that with tiny slips this is what happens for nearly all of these
-  // starts, and also that a better one, the minimum along the ray of $b$, would
-  // do.
-  //
-  // The thesis uses a method of Uzawa, an iteration for the tangential force,
-  // and you can choose it by <code>Solver/Local solver = Uzawa</code>: with a
-  // multiplier $\mu$ in the unit disc, $v=A^{-1}(b-s\mu)$, then $\mu\leftarrow
-  // P(\mu+\rho sv)$ with the projection $P$ to the disc. It does not mind tiny
-  // slips either, but the number of its steps grows with the condition number
-  // of $A$, which is moderate only for cells of decent shape; after a thousand
-  // the library resorts to the equation above.
+  // In the eigenbasis of $A$ a scalar equation for the direction remains, with
+  // close bounds to start from; the amount of slip then follows from a
+  // quadratic equation without cancellation. The introduction derives both.
+  // Four steps of an iteration of third order suffice for all of the problems
+  // in <code>tests/contact/local_problem_3d.cc</code>, and nothing special
+  // happens when the slip is tiny, since the direction does not vanish with it.
+  // That is what the obvious method, Newton's for $v$, suffers from
+  // (Remark 6.6). The method of Uzawa that the thesis uses, <code>Solver/Local
+  // solver = Uzawa</code>, does not mind tiny slips either, but takes a number
+  // of steps that grows with the condition number of $A$.
   //
   // <i>Linearisation and truncation.</i> In two dimensions $|u_T|$ is piecewise
   // linear, and at a node that slides friction is a constant force. In three it
@@ -576,20 +544,10 @@ namespace StepFriction3d
   //   stiffness of the node, the mean of the diagonal of its block of $A$.
   //   Nothing turns there any more; more would only cost digits.
   //
-  // What if $\omega''$ is left out? <code>Solver/Truncation = phases without
-  // second order</code> does this. Phases and gradients are right, only the
-  // coarse matrices do not know that turning the slip costs energy. Where
-  // $\omega''_p$ is much larger than the elastic stiffness, a gradient across
-  // the slip then leads to a correction that is too large by about that factor.
-  // Without a line search nothing keeps it from raising the energy, and
-  // the iteration takes hundreds of cycles (Remark 6.7); try it in the scene
-  // <code>cylinder</code>, together with <code>Solver/Coarse correction =
-  // monotone</code>. With a line search the energy falls in any case, but the
-  // correction is shortened as a whole to what its worst nodes can bear. The
-  // third variant, <code>contact</code>, is that of the three-dimensional
-  // example in the thesis: all nodes in contact are truncated entirely, there
-  // is no $\omega''$, and coarse matrices change only when nodes come into
-  // contact or lose it. But coarse functions cannot move a zone that slides.
+  // What happens without $\omega''$ (Remark 6.7), and without the tangential
+  // displacements of sliding nodes, can be tried with <code>Solver/Truncation =
+  // phases without second order</code> and <code>contact</code>, together with
+  // <code>Solver/Coarse correction = monotone</code>.
   //
   // <i>Line search and recombination.</i> Along a correction $v$ the energy
   // $\hat J(u+\alpha v)$ was a parabola plus a piecewise linear function. Now
@@ -600,38 +558,27 @@ namespace StepFriction3d
   // decreases; each evaluation takes a few operations per contact node and no
   // product with the matrix.
   //
-  // The recombination with the last step, in contrast, is about the model:
-  // among all combinations of the new correction with the last step it takes
-  // the one with the smallest energy of the linearised problem, $\omega''$
-  // included. As long as phases stay and $\omega''$ hardly changes, the cycle
-  // is a symmetric preconditioner of that problem, and the iteration behaves
-  // like the method of conjugate gradients. If the model is poor, monotonicity
-  // is not lost: the combination is only a direction, and the line search sees
-  // the true energy.
+  // The recombination with the last step, in contrast, is about the model,
+  // $\omega''$ included. While phases stay and $\omega''$ hardly changes, the
+  // iteration behaves like the method of conjugate gradients. If the model is
+  // poor, the combination is still only a direction for the line search.
   //
-  // Before the line search the correction is looked at once more, node by node.
-  // It may want a node to reverse its slip, $(u+v)_T\cdot u_T<0$, for the model
-  // knows nothing of the kink on the way. Such a node would hold up all others,
-  // since the line search would have to stop near its kink. Its correction is
-  // therefore cut off where the component along the slip becomes zero, and it
-  // is left to the relaxation how this node goes on. (This is done in two
-  // dimensions, too.) It changes the direction once more, and once more it is
-  // the line search that answers for the energy.
+  // Before the line search, nodes that the correction would take back beyond
+  // where they came from, $(u+v)_T\cdot u_T<0$, are stopped on the way, for the
+  // model knows nothing of the kink there. A single one of them would hold up
+  // all others. (This is done in two dimensions, too.)
   //
   // <i>Which guarantees remain?</i> With given $\tau$ and <code>Solver/Coarse
   // correction = truncated</code> the energy never rises, as in two dimensions,
   // because the line search sees to it. The bounds of <code>monotone</code>
   // keep corrections admissible, and keep sliding nodes from reversing their
   // slip. In two dimensions the energy is <i>quadratic</i> within these bounds,
-  // so that lowering the model lowers the energy. In three it is not. Let a
-  // node have slip $(1,0)$, and correct it by $(a,h)$, $-1<a$. Its friction is
-  // $s\sqrt{(1+a)^2+h^2}\approx s(1+a+\frac{h^2}{2(1+a)})$, while the model
-  // says $s(1+a+\frac{h^2}2)$. If the correction shortens the slip, $a<0$, the
-  // model underestimates the energy, and the more so the closer the node gets
-  // to rest. Bounds do not prevent this. Therefore <code>monotone</code>, which
-  // has no line search, has no guarantee in three dimensions, not even for
-  // given $\tau$. It has to rely on the relaxation to repair what went wrong,
-  // and on the certificate to tell whether that worked.
+  // so that lowering the model lowers the energy. In three it is not: where a
+  // correction shortens a slip and turns it at once, the model underestimates
+  // the energy, as the introduction shows. Therefore <code>monotone</code>,
+  // which has no line search, has no guarantee in three dimensions, not even
+  // for given $\tau$. It has to rely on the relaxation to repair what went
+  // wrong, and on the certificate to tell whether that worked.
   template <int dim>
   void
   ContactProblem<dim>::solve(const unsigned int level)
