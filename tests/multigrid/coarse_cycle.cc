@@ -106,7 +106,7 @@ namespace
             const double x = cell->vertex(v)[0];
             if (!constraints.is_free(node))
               continue;
-            if (x < .8)
+            if (x < (dim == 2 ? .8 : .5))
               truncation.set(node, zero_block<dim>(), zero_block<dim>());
             else if (x > 1.2)
               {

@@ -35,7 +35,7 @@ namespace
       text << entry << '=' << value;
       return text.str();
     };
-    const NestedIteration<2> iteration(
+    NestedIteration<2> iteration(
       read_parameters(SCENES_DIR "/block.prm",
                       {override("Contact/Friction coefficient", F),
                        override("Material/Poisson ratio", nu),
