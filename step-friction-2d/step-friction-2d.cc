@@ -676,6 +676,8 @@ namespace StepFriction2d
   {
     parallel::distributed::SolutionTransfer<dim, VectorType> transfer(
       dof_handler);
+    const double lift_of_displacement = lift_above_rounding(displacement);
+    const double lift_of_tractions    = lift_above_rounding(tractions);
     triangulation.prepare_coarsening_and_refinement();
     const std::vector<const VectorType *> old_vectors = {&displacement,
                                                          &tractions};
@@ -694,6 +696,8 @@ namespace StepFriction2d
     tractions.reinit(nodal_constraints->partitioner());
     std::vector<VectorType *> new_vectors = {&displacement, &tractions};
     transfer.interpolate(new_vectors);
+    displacement.add(-lift_of_displacement);
+    tractions.add(-lift_of_tractions);
   }
 
 

@@ -1,6 +1,7 @@
 #include <common/solvers/initial_guess.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace Friction
 {
@@ -21,6 +22,19 @@ namespace Friction
               force[d] / contact[p].measure;
         }
     return tractions;
+  }
+
+
+
+  double
+  lift_above_rounding(VectorType &v)
+  {
+    const double largest = v.linfty_norm();
+    const double lift =
+      largest > 0 ? std::exp2(std::ceil(std::log2(largest))) : 0.;
+    v.add(lift);
+    v.update_ghost_values();
+    return lift;
   }
 
 
