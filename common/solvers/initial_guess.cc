@@ -31,7 +31,7 @@ namespace Friction
   {
     const double largest = v.linfty_norm();
     const double lift =
-      largest > 0 ? std::exp2(std::ceil(std::log2(largest))) : 0.;
+      largest > 0 ? std::exp2(std::ceil(std::log2(largest)) + 1.) : 0.;
     v.add(lift);
     v.update_ghost_values();
     return lift;

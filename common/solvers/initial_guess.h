@@ -21,12 +21,12 @@ namespace Friction
                                const ContactState          &state);
 
   /**
-   * Adds a constant of at least the size of the largest value to @p v and
-   * returns it. In debug mode SolutionTransfer demands that neighbouring cells
-   * interpolate the same values, relative to these; where values are nothing
-   * but rounding, as those that vanish by symmetry are, they do not. The
-   * constant is a power of two, so that it can be taken off again without
-   * leaving a trace: zeros stay zeros.
+   * Adds a constant of at least twice the largest value to @p v and returns it.
+   * In debug mode SolutionTransfer demands that neighbouring cells interpolate
+   * the same values, relative to these; where values are nothing but rounding,
+   * as those that vanish by symmetry are, they do not. The constant is a power
+   * of two, so that it can be taken off again without leaving a trace: zeros
+   * stay zeros.
    */
   double lift_above_rounding(VectorType &v);
 
