@@ -1,26 +1,13 @@
 #ifndef friction_scene_input_error_h
 #define friction_scene_input_error_h
 
+#include <common/input_error.h>
+
 #include <cstddef>
-#include <stdexcept>
 #include <string>
 
 namespace Friction
 {
-  /**
-   * Something is wrong with what the user gave us: a scene file, a command
-   * line override, a mesh. what() is one sentence for the user, saying what is
-   * wrong, where, and what to do about it. Everything else that goes wrong is
-   * an error of the program and is reported in another way.
-   */
-  class InputError : public std::runtime_error
-  {
-  public:
-    explicit InputError(const std::string &sentence)
-      : std::runtime_error(sentence)
-    {}
-  };
-
   /**
    * The end of a sentence about a list that has not as many members as there
    * are dimensions. If it has as many as there are in the other program, the
