@@ -69,19 +69,6 @@ namespace Friction
             print_default_parameters(std::cout);
             return 0;
           }
-        // The data structures are those of a parallel program, but the solver
-        // does not yet exchange values between processes. Rather than compute
-        // something that looks plausible we refuse.
-        if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
-          {
-            if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-              std::cerr << program
-                        << ": more than one process is not supported yet: run "
-                           "this program without mpirun, or with -np 1."
-                        << std::endl;
-            return 2;
-          }
-
         // The scene is read and checked before anything is created.
         return run(read_parameters(arguments[0],
                                    {arguments.begin() + 1, arguments.end()}))
