@@ -50,19 +50,26 @@ namespace Friction
           }
       }
 
-    // The owner of a node knows all about it; whoever has it as a ghost may
-    // not.
-    if (node_numbering.distribution().n_processes() > 1)
-      {
-        values.update_ghost_values();
-        VectorType owners_flags(leaf_partitioner);
-        for (unsigned int node = 0; node < n_owned_nodes(); ++node)
-          owners_flags.local_element(dim * node) = flags[node];
-        owners_flags.update_ghost_values();
-        for (unsigned int node = n_owned_nodes(); node < n_nodes(); ++node)
-          flags[node] =
-            static_cast<unsigned char>(owners_flags.local_element(dim * node));
-      }
+    update_ghosts();
+  }
+
+
+
+  // The owner of a node knows all about it; whoever has it as a ghost may not.
+  template <int dim>
+  void
+  NodalConstraints<dim>::update_ghosts()
+  {
+    if (node_numbering.distribution().n_processes() == 1)
+      return;
+    values.update_ghost_values();
+    VectorType owners_flags(leaf_partitioner);
+    for (unsigned int node = 0; node < n_owned_nodes(); ++node)
+      owners_flags.local_element(dim * node) = flags[node];
+    owners_flags.update_ghost_values();
+    for (unsigned int node = n_owned_nodes(); node < n_nodes(); ++node)
+      flags[node] =
+        static_cast<unsigned char>(owners_flags.local_element(dim * node));
   }
 
 

@@ -130,13 +130,17 @@ namespace Friction
     void impose(VectorType &u) const;
 
     /**
-     * Prescribes the present value @p value of a component of a node: this is
-     * how the bonded comparison problem is made out of a contact problem. To be
-     * called on all processes that know the node.
+     * Prescribes the present value @p value of a component of an owned node:
+     * this is how the bonded comparison problem is made out of a contact
+     * problem. When all is said, update_ghosts() has to follow.
      */
     void prescribe(const unsigned int node,
                    const unsigned int component,
                    const double       value);
+
+    /** Has all processes that know a node know what its owner knows of it.
+     * Collective. */
+    void update_ghosts();
 
   private:
     static constexpr unsigned char hanging_bit    = 0x80;

@@ -142,6 +142,7 @@ namespace Benchmark
           bonded.prescribe(problem.contact[p].node,
                            d,
                            u.local_element(dim * problem.contact[p].node + d));
+    bonded.update_ghosts();
     return bonded;
   }
 
@@ -189,18 +190,18 @@ namespace Benchmark
                                            numbers::invalid_boundary_id,
                                            Obstacle<dim>(),
                                            ContactNormal::body);
-        const LevelHierarchy<dim>  hierarchy(d.dof_handler, bonded);
-        CoulombSolver<dim>         linear_solver(d.dof_handler,
-                                         hierarchy,
+        const LevelHierarchy<dim>  hierarchy(
+          d.dof_handler, bonded, problem.matrix);
+        CoulombSolver<dim> linear_solver(hierarchy,
                                          {problem.matrix,
-                                                  problem.forces,
-                                                  bonded,
-                                                  nothing,
-                                                  FrictionLaw::none,
-                                                  0.},
+                                          problem.forces,
+                                          bonded,
+                                          nothing,
+                                          FrictionLaw::none,
+                                          0.},
                                          parameters.solver);
-        VectorType                 u;
-        ContactState               no_state(0, false);
+        VectorType         u;
+        ContactState       no_state(0, false);
         nest.make_guess(u);
         bonded.impose(u);
         Timer              timer;
@@ -236,7 +237,7 @@ namespace Benchmark
     // What holds the memory.
     const Discretization<dim> &d = *nest.discretization;
     const CoulombSolver<dim>   solver(
-      d.dof_handler, *d.hierarchy, d.problem(), parameters.solver);
+      *d.hierarchy, d.problem(), parameters.solver);
     const double n_dofs = d.dof_handler.n_dofs();
     std::printf("bytes per dof: leaf matrix %.0f, level hierarchy %.0f, "
                 "smoother and level matrices %.0f; peak of the process %.0f\n",

@@ -222,8 +222,7 @@ namespace
         double contraction_of_V = 1.;
         for (const Cycle type : {Cycle::V, Cycle::W})
           {
-            CoarseCycle<dim> cycle(problem.discretization->dof_handler,
-                                   problem.matrix(),
+            CoarseCycle<dim> cycle(problem.matrix(),
                                    problem.hierarchy(),
                                    problem.constraints(),
                                    type,
@@ -287,8 +286,7 @@ namespace
     const Truncation<dim> truncation =
       make_truncation<dim>(problem, "random at contact", random);
     const Setup<dim> setup(problem, truncation);
-    CoarseCycle<dim> cycle(problem.discretization->dof_handler,
-                           problem.matrix(),
+    CoarseCycle<dim> cycle(problem.matrix(),
                            problem.hierarchy(),
                            problem.constraints(),
                            Cycle::V,
@@ -339,8 +337,7 @@ namespace
     Truncation<dim> truncation(problem.constraints());
     for (unsigned int i = 0; i < problem.constraints().n_nodes(); ++i)
       truncation.set(i, zero_block<dim>(), zero_block<dim>());
-    CoarseCycle<dim> cycle(problem.discretization->dof_handler,
-                           problem.matrix(),
+    CoarseCycle<dim> cycle(problem.matrix(),
                            problem.hierarchy(),
                            problem.constraints(),
                            Cycle::V,
@@ -380,12 +377,8 @@ namespace
 
         for (const Cycle type : {Cycle::V, Cycle::W})
           {
-            CoarseCycle<dim> cycle(problem.discretization->dof_handler,
-                                   problem.matrix(),
-                                   problem.hierarchy(),
-                                   constraints,
-                                   type,
-                                   2);
+            CoarseCycle<dim> cycle(
+              problem.matrix(), problem.hierarchy(), constraints, type, 2);
             cycle.update(truncation);
             const std::string which = std::string(name(type)) + "-cycle: ";
 

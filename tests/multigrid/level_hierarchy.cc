@@ -65,6 +65,27 @@ namespace
               difference =
                 std::max(difference, std::abs(value - prolonged(dim * i + d)));
             }
+        // Children on the finest level are leaf nodes; other nodes of that
+        // level have no part in what is restricted.
+        std::vector<unsigned int> fine_node(problem.constraints().n_nodes());
+        const bool                finer_last = (k + 1 == hierarchy.n_levels());
+        if (finer_last)
+          {
+            const VectorType everything(fine_vector);
+            fine_vector = 0.;
+            for (const auto &own : fine.own_nodes())
+              {
+                fine_node[own.leaf] = own.node;
+                for (unsigned int d = 0; d < dim; ++d)
+                  fine_vector(dim * own.node + d) =
+                    everything(dim * own.node + d);
+              }
+            restricted = 0.;
+            transfer.restrict_and_add(k, restricted, fine_vector);
+          }
+        const auto number = [&](const unsigned int child) {
+          return finer_last ? fine_node[child] : child;
+        };
         for (unsigned int i = 0; i < coarse.n_nodes(); ++i)
           for (unsigned int d = 0; d < dim; ++d)
             {
@@ -72,14 +93,21 @@ namespace
               for (auto c = coarse.children().begin(i);
                    c != coarse.children().end(i);
                    ++c)
-                value += c->weight * fine_vector(dim * c->node + d);
+                value += c->weight * fine_vector(dim * number(c->node) + d);
               difference =
                 std::max(difference, std::abs(value - restricted(dim * i + d)));
             }
 
         // Entry by entry: children() is parents() transposed.
         std::set<std::tuple<unsigned int, unsigned int, double>> weights;
+        std::set<unsigned int> restricted_nodes;
         for (unsigned int i = 0; i < fine.n_nodes(); ++i)
+          if (!finer_last)
+            restricted_nodes.insert(i);
+        if (finer_last)
+          for (const auto &own : fine.own_nodes())
+            restricted_nodes.insert(own.node);
+        for (const unsigned int i : restricted_nodes)
           for (auto p = fine.parents().begin(i); p != fine.parents().end(i);
                ++p)
             weights.emplace(i, p->node, p->weight);
@@ -87,7 +115,7 @@ namespace
           for (auto c = coarse.children().begin(i);
                c != coarse.children().end(i);
                ++c)
-            asymmetry += 1 - weights.erase({c->node, i, c->weight});
+            asymmetry += 1 - weights.erase({number(c->node), i, c->weight});
         asymmetry += weights.size();
       }
     check_below(difference, 1e-14, "prolongation and restriction of deal.II");
@@ -132,43 +160,55 @@ namespace
             }
         }
 
-    bool finest_agrees = true, vertices_agree = true, edges_agree = true;
+    bool finest_agrees = true, vertices_agree = true, edges_agree = true,
+         flags_agree = true;
     for (unsigned int i = 0; i < n_leaf; ++i)
       finest_agrees = finest_agrees && hierarchy.finest_level(i) == finest[i];
     for (unsigned int k = 0; k < n_levels; ++k)
       {
         const auto &level = hierarchy.level(k);
         for (unsigned int i = 0; i < n_leaf; ++i)
+          if (!constraints.is_hanging(i) &&
+              (finest[i] == k || finest[i] == k + 1))
+            {
+              const auto it  = node_at.find({k, vertex_of_leaf[i]});
+              vertices_agree = vertices_agree &&
+                hierarchy.node_of_leaf(k, i) ==
+                  (it == node_at.end() ? numbers::invalid_unsigned_int
+                                       : it->second) &&
+                (it == node_at.end() || level.leaf_node(it->second) == i);
+            }
+        for (unsigned int i = 0; i < n_leaf; ++i)
           {
-            const auto it  = node_at.find({k, vertex_of_leaf[i]});
-            vertices_agree = vertices_agree &&
-              level.node_of_leaf(i) ==
-                (it == node_at.end() ? numbers::invalid_unsigned_int
-                                     : it->second) &&
-              (it == node_at.end() || level.leaf_node(it->second) == i);
-          }
-        for (unsigned int node = 0; node < level.n_nodes(); ++node)
-          {
-            const unsigned int vertex = vertex_of_leaf[level.leaf_node(node)];
+            const auto it = node_at.find({k, vertex_of_leaf[i]});
+            if (it == node_at.end())
+              continue;
+            const unsigned int node = it->second;
             // The edge is where a cell of a coarser level is active.
             edges_agree = edges_agree &&
-              level.is_refinement_edge(node) == (coarsest_active[vertex] < k);
+              level.is_refinement_edge(node) ==
+                (coarsest_active[vertex_of_leaf[i]] < k);
+            flags_agree = flags_agree &&
+              level.is_hanging(node) == constraints.is_hanging(i);
+            for (unsigned int d = 0; d < dim; ++d)
+              flags_agree = flags_agree &&
+                level.is_prescribed(node, d) == constraints.is_prescribed(i, d);
           }
       }
     check(finest_agrees, "f(p) is the finest level that has p as a vertex");
     check(vertices_agree,
           "leaf nodes and level nodes are at the same vertices");
+    check(flags_agree, "what is known of a leaf node is known on all levels");
     check(edges_agree, "the refinement edge is where coarser cells are active");
 
     // Own nodes cover the leaf space, once.
     std::vector<unsigned int> owned(n_leaf, 0);
     bool                      own_is_finest = true;
     for (unsigned int k = 0; k < n_levels; ++k)
-      for (const unsigned int node : hierarchy.level(k).own_nodes())
+      for (const auto &own : hierarchy.level(k).own_nodes())
         {
-          const unsigned int leaf = hierarchy.level(k).leaf_node(node);
-          ++owned[leaf];
-          own_is_finest = own_is_finest && finest[leaf] == k;
+          ++owned[own.leaf];
+          own_is_finest = own_is_finest && finest[own.leaf] == k;
         }
     bool once = true;
     for (unsigned int i = 0; i < n_leaf; ++i)
@@ -192,15 +232,17 @@ namespace
             for (unsigned int i = range.first; i < range.second; ++i)
               relaxed[i] = 1;
           }
-        for (unsigned int i = 0; i < level.n_nodes(); ++i)
+        for (unsigned int leaf = 0; leaf < n_leaf; ++leaf)
           {
-            const unsigned int leaf     = level.leaf_node(i);
-            const unsigned int vertex   = vertex_of_leaf[leaf];
-            const bool         expected = coarsest_active[vertex] >= k &&
+            const unsigned int vertex = vertex_of_leaf[leaf];
+            const auto         it     = node_at.find({k, vertex});
+            if (it == node_at.end())
+              continue;
+            const bool expected = coarsest_active[vertex] >= k &&
               touches_refined.count({k, vertex}) > 0 &&
               !constraints.is_fixed(leaf);
-            relaxed_agree = relaxed_agree && relaxed[i] == expected;
-            n_relaxed += relaxed[i];
+            relaxed_agree = relaxed_agree && relaxed[it->second] == expected;
+            n_relaxed += relaxed[it->second];
           }
         n_level_nodes += level.n_nodes();
       }

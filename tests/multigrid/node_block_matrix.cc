@@ -45,17 +45,14 @@ namespace
             pattern[i].push_back(j);
             pattern[j].push_back(i);
           }
-    std::vector<std::size_t>  starts = {0};
-    std::vector<unsigned int> columns;
+    auto blocks = std::make_shared<NodePattern>();
     for (unsigned int i = 0; i < n; ++i)
       {
-        std::sort(pattern[i].begin(), pattern[i].end());
         if (!empty[i])
-          columns.push_back(i);
-        columns.insert(columns.end(), pattern[i].begin(), pattern[i].end());
-        starts.push_back(columns.size());
+          pattern[i].push_back(i);
+        blocks->append_row(pattern[i]);
       }
-    NodeBlockMatrix<dim> A(starts, columns);
+    NodeBlockMatrix<dim> A(blocks);
     for (unsigned int i = 0; i < n; ++i)
       for (std::size_t e = A.row_begin(i); e < A.row_end(i); ++e)
         {
@@ -174,6 +171,7 @@ namespace
         bool same = true;
         for (const unsigned int chunk_size : {1, 3, 8, 17, 59, 60, 1000})
           {
+            GhostExchange            nobody;
             const SweepSchedule<dim> schedule(A, nodes, chunk_size);
             Eigen::VectorXd          chased = x, defect(dim * n);
             gauss_seidel_sweeps<dim>(schedule,
@@ -183,6 +181,7 @@ namespace
                                      chased.data(),
                                      backwards,
                                      3,
+                                     nobody,
                                      defect.data());
             A.residual(r.data(), b.data(), got.data());
             same = same &&

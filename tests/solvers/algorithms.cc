@@ -160,10 +160,9 @@ namespace
     ContactState states(0, false);
     for (const auto &choice : choices)
       {
-        VectorType       u = d.admissible_start();
-        ContactState     state(d.contact->size(), true);
-        CoulombSolver<3> solver(
-          d.dof_handler, *d.hierarchy, d.problem(), choice.second);
+        VectorType         u = d.admissible_start();
+        ContactState       state(d.contact->size(), true);
+        CoulombSolver<3>   solver(*d.hierarchy, d.problem(), choice.second);
         const SolverReport report = solver.solve(u, state);
         if (solution.size() == 0)
           {
@@ -237,10 +236,8 @@ namespace
             warm += iteration.report.cycles.size();
             u                      = d.admissible_start();
             ContactState     state = ContactState(guess.size(), true);
-            CoulombSolver<2> solver(d.dof_handler,
-                                    *d.hierarchy,
-                                    problem,
-                                    iteration.parameters.solver);
+            CoulombSolver<2> solver(
+              *d.hierarchy, problem, iteration.parameters.solver);
             cold += solver.solve(u, state).cycles.size();
           }
     } while (iteration.refine());
@@ -325,7 +322,7 @@ namespace
         VectorType           u       = d.admissible_start();
         ContactState         state(d.contact->size(), problem.has_friction());
         MonotoneMultigrid<2> multigrid(
-          d.dof_handler, *d.hierarchy, problem, none->parameters.solver);
+          *d.hierarchy, problem, none->parameters.solver);
         const MultigridResult result = multigrid.solve(u, state, true);
         multigrid.update_normal_forces(state, u);
         normal_only = normal_only && result.converged &&

@@ -158,12 +158,10 @@ namespace
     const Discretization<3> discretization(scene, *mesh);
     VectorType              u = discretization.admissible_start();
     ContactState            state(discretization.contact->size(), false);
-    CoulombSolver<3>        solver(discretization.dof_handler,
-                            *discretization.hierarchy,
-                            discretization.problem(),
-                            parameters.solver);
-    const SolverReport      report = solver.solve(u, state);
-    const Measured result = measure(*discretization.contact, state, report);
+    CoulombSolver<3>        solver(
+      *discretization.hierarchy, discretization.problem(), parameters.solver);
+    const SolverReport report = solver.solve(u, state);
+    const Measured     result = measure(*discretization.contact, state, report);
     return result;
   }
 

@@ -134,11 +134,9 @@ namespace
     const ContactBoundary<3> &contact = *discretization.contact;
     VectorType                u       = discretization.admissible_start();
     ContactState              state(contact.size(), true);
-    CoulombSolver<3>          solver(discretization.dof_handler,
-                            *discretization.hierarchy,
-                            discretization.problem(),
-                            parameters.solver);
-    const SolverReport        report = solver.solve(u, state);
+    CoulombSolver<3>          solver(
+      *discretization.hierarchy, discretization.problem(), parameters.solver);
+    const SolverReport report = solver.solve(u, state);
     discretization.hanging.distribute(u);
 
     double     error = 0, scale = 0;

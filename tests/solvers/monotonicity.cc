@@ -77,8 +77,7 @@ namespace
 
       VectorType         u = discretization->admissible_start();
       ContactState       state(discretization->contact->size(), true);
-      CoulombSolver<dim> solver(discretization->dof_handler,
-                                *discretization->hierarchy,
+      CoulombSolver<dim> solver(*discretization->hierarchy,
                                 discretization->problem(),
                                 parameters.solver);
       converged      = solver.solve(u, state).converged;
@@ -225,8 +224,7 @@ namespace
       d.matrix, *d.constraints, *d.contact, F);
     Linearization<dim> linearization(
       d.matrix, *d.constraints, *d.contact, F, TruncationVariant::phases);
-    CoarseCycle<dim> coarse(
-      d.dof_handler, d.matrix, *d.hierarchy, *d.constraints, cycle, 6);
+    CoarseCycle<dim> coarse(d.matrix, *d.hierarchy, *d.constraints, cycle, 6);
 
     double increase_in_sweeps = 0, increase_in_correction = 0,
            increase_in_model = 0, increase_in_step = 0, penetration = -1e300,
@@ -418,12 +416,11 @@ namespace
 
               VectorType             u(u_0);
               ContactState           state = fixture.initial_state();
-              MonotoneMultigrid<dim> multigrid(
-                d.dof_handler, *d.hierarchy, problem, settings);
-              const double          first  = functional.energy(u, state);
-              const MultigridResult result = multigrid.solve(u, state, false);
-              converged                    = converged && result.converged;
-              double last                  = first;
+              MonotoneMultigrid<dim> multigrid(*d.hierarchy, problem, settings);
+              const double           first  = functional.energy(u, state);
+              const MultigridResult  result = multigrid.solve(u, state, false);
+              converged                     = converged && result.converged;
+              double last                   = first;
               for (const CycleInfo &info : result.cycles)
                 {
                   increase =
@@ -634,8 +631,7 @@ namespace
     const DiscreteProblem<dim> problem = fixture.problem();
     VectorType                 u       = fixture.random_start();
     ContactState               state   = fixture.initial_state();
-    MonotoneMultigrid<dim>     multigrid(
-      d.dof_handler, *d.hierarchy, problem, SolverSettings());
+    MonotoneMultigrid<dim> multigrid(*d.hierarchy, problem, SolverSettings());
     multigrid.solve(u, state, false);
     Linearization<dim> linearization(d.matrix,
                                      *d.constraints,
@@ -645,7 +641,7 @@ namespace
     linearization.update(u, state);
     const Truncation<dim> &truncation = linearization.truncation();
     CoarseCycle<dim>       coarse(
-      d.dof_handler, d.matrix, *d.hierarchy, *d.constraints, Cycle::V, 6);
+      d.matrix, *d.hierarchy, *d.constraints, Cycle::V, 6);
     coarse.update(truncation);
 
     VectorType b = fixture.random_direction();

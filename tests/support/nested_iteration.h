@@ -59,10 +59,8 @@ namespace Tests
     {
       s = make_guess(u);
       Timer              timer;
-      CoulombSolver<dim> solver(discretization->dof_handler,
-                                *discretization->hierarchy,
-                                discretization->problem(),
-                                settings);
+      CoulombSolver<dim> solver(
+        *discretization->hierarchy, discretization->problem(), settings);
       setup_seconds = timer.wall_time();
       timer.restart();
       SolverReport result = solver.solve(u, s);
