@@ -286,8 +286,11 @@ namespace Friction
     data_out.build_patches(mapping);
 
     const MPI_Comm communicator = Compatibility::mpi_communicator(dof_handler);
+    bool           has_cells    = false;
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      has_cells = has_cells || cell->is_locally_owned();
     if (format == FieldFormat::hdf5)
-      write_body_hdf5(level, data_out, communicator);
+      write_body_hdf5(level, data_out, has_cells, communicator);
     else
       write_body_vtu(level, data_out, communicator);
   }
@@ -326,10 +329,15 @@ namespace Friction
 
   // Corners of different cells are different points, although that takes more
   // room than to keep each vertex once: stresses jump.
+  //
+  // On a coarse mesh there may be processes without any cell, which deal.II 9.4
+  // does not want to write. So only those with cells take part, and the first
+  // of them writes the description of what they have written.
   template <int dim>
   void
   FieldWriter<dim>::write_body_hdf5(const unsigned int  level,
                                     const DataOut<dim> &data_out,
+                                    const bool          has_cells,
                                     const MPI_Comm      communicator)
   {
     DataOutBase::DataOutFilter data(
@@ -337,32 +345,53 @@ namespace Friction
                                       /*xdmf_hdf5_output=*/true));
     data_out.write_filtered_data(data);
 
+    const unsigned int rank   = Utilities::MPI::this_mpi_process(communicator);
+    const unsigned int writer = Utilities::MPI::min(
+      has_cells ? rank : Utilities::MPI::n_mpi_processes(communicator),
+      communicator);
+    MPI_Comm those_with_cells;
+    MPI_Comm_split(
+      communicator, has_cells ? 0 : MPI_UNDEFINED, rank, &those_with_cells);
+
     // Points and data have double precision, and there is a header.
-    std::uint64_t numbers = 3;
-    for (unsigned int i = 0; i < data.n_data_sets(); ++i)
-      numbers += data.get_data_set_dim(i);
-    std::uint64_t size = sizeof(double) * numbers * data.n_nodes() +
-      sizeof(unsigned int) * GeometryInfo<dim>::vertices_per_cell *
-        data.n_cells();
+    std::uint64_t size = 0;
+    if (has_cells)
+      {
+        unsigned int n_numbers = 3;
+        for (unsigned int i = 0; i < data.n_data_sets(); ++i)
+          n_numbers += data.get_data_set_dim(i);
+        size = sizeof(double) * n_numbers * data.n_nodes() +
+          sizeof(unsigned int) * GeometryInfo<dim>::vertices_per_cell *
+            data.n_cells();
+      }
     size = Utilities::MPI::sum(size, communicator) + (1 << 14);
 
     const std::string name = file_name("body", level) + ".h5";
-    write_together_then_rename(directory.file(name),
-                               communicator,
-                               size,
-                               [&](const std::string &temporary) {
-                                 data_out.write_hdf5_parallel(
-                                   data, temporary, communicator);
-                               });
+    XDMFEntry         entry;
+    write_together_then_rename(
+      directory.file(name),
+      communicator,
+      size,
+      [&](const std::string &temporary) {
+        if (has_cells)
+          {
+            data_out.write_hdf5_parallel(data, temporary, those_with_cells);
+            // In the description names are relative to its own place.
+            entry =
+              data_out.create_xdmf_entry(data, name, level, those_with_cells);
+          }
+      });
+    if (has_cells)
+      MPI_Comm_free(&those_with_cells);
 
-    // In the description names are relative to its own place.
     body_entries.push_back(
-      data_out.create_xdmf_entry(data, name, level, communicator));
-    on_first_process(communicator, [&]() {
-      write_then_rename(
-        directory.file("body.xdmf"), [&](const std::string &temporary) {
-          data_out.write_xdmf_file(body_entries, temporary, MPI_COMM_SELF);
-        });
+      Utilities::MPI::broadcast(communicator, entry, writer));
+    on_all_processes(communicator, [&]() {
+      if (rank == writer)
+        write_then_rename(
+          directory.file("body.xdmf"), [&](const std::string &temporary) {
+            data_out.write_xdmf_file(body_entries, temporary, MPI_COMM_SELF);
+          });
     });
   }
 

@@ -118,6 +118,7 @@ namespace Friction
 
     void write_body_hdf5(const unsigned int          level,
                          const dealii::DataOut<dim> &data_out,
+                         const bool                  has_cells,
                          const MPI_Comm              communicator);
 
     void

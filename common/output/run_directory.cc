@@ -161,16 +161,15 @@ namespace Friction
     if (!first)
       file.leave_alone();
 
+    // What the file system does not know, quotas for example, is found out too
+    // late; but it is better to know about full disks than about nothing.
     on_first_process(communicator, [&]() {
-      const int out =
-        ::open(file.name().c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-      const int error = out < 0 ? errno : ::posix_fallocate(out, 0, size);
-      if (out >= 0)
-        ::close(out);
-      // Of a file system that knows no reservation we cannot learn anything.
-      if (error != 0 && error != EOPNOTSUPP && error != EINVAL)
+      std::error_code error;
+      const auto      space = std::filesystem::space(
+        std::filesystem::path(file.name()).parent_path(), error);
+      if (!error && space.available < size)
         throw InputError("The file '" + final_name +
-                         "' cannot be written: " + std::strerror(error) + ".");
+                         "' cannot be written: there is not enough space.");
     });
 
     std::optional<std::string> error;

@@ -37,8 +37,8 @@ namespace Friction
   /**
    * The same for one file that all processes write together: @p write_to is
    * called by all of them with the same temporary name, the first one renames.
-   * Whatever goes wrong is an InputError on all of them. That the file will not
-   * fit is found out before, since it would be found out in the middle of
+   * Whatever goes wrong is an InputError on all of them. That the disk is full
+   * is asked for before, since it would be found out in the middle of
    * collective operations.
    *
    * @param size  in bytes, about, of the whole file.
