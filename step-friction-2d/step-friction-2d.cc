@@ -136,6 +136,7 @@ namespace StepFriction2d
     // before any contact, prescribed components among it, as an object of our
     // own.
     AffineConstraints<double>              hanging_node_constraints;
+    DynamicSparsityPattern                 pattern;
     std::unique_ptr<NodalConstraints<dim>> nodal_constraints;
     std::unique_ptr<ContactBoundary<dim>>  contact_boundary;
     NodeBlockMatrix<dim>                   stiffness;
@@ -278,12 +279,26 @@ namespace StepFriction2d
               }
     prescribed.close();
 
+    // The sparsity pattern of the stiffness matrix knows about hanging nodes
+    // but not about prescribed displacements, whose rows and columns we keep.
+    // We make it here, before there is a matrix, because with several processes
+    // it says whose displacements a process needs to know: all that the rows of
+    // its nodes couple to. Usually these are the nodes of its own cells and of
+    // their neighbours, the locally relevant ones of step-40. But a row to
+    // which a hanging node has been condensed reaches all cells around that
+    // node, and one of them may be farther away.
+    make_stiffness_pattern(dof_handler, hanging_node_constraints, pattern);
+
     // From here on we think in nodes. <code>NodalConstraints</code> keeps, for
     // each node, whether it hangs and which of its components are prescribed,
     // and it owns the layout of all vectors on the leaf mesh: node $i$ has the
-    // local indices $di,\dots,di+d-1$.
+    // local indices $di,\dots,di+d-1$, those of the process first and then
+    // those that it only has copies of.
     nodal_constraints = std::make_unique<NodalConstraints<dim>>(
-      dof_handler, hanging_node_constraints, prescribed);
+      dof_handler,
+      hanging_node_constraints,
+      prescribed,
+      coupled_dofs(dof_handler, pattern));
 
     // Now for contact. The obstacle is rigid and known, so that all there is to
     // know about it are the nodes of the body that may touch it, the direction
@@ -326,16 +341,6 @@ namespace StepFriction2d
   void
   ContactProblem<dim>::assemble_system()
   {
-    // The sparsity pattern knows about hanging nodes but not about prescribed
-    // displacements, whose rows and columns we keep. The pattern is needed once
-    // more at the end of this function and must live until then.
-    const IndexSet relevant =
-      DoFTools::extract_locally_relevant_dofs(dof_handler);
-    DynamicSparsityPattern pattern(relevant);
-    DoFTools::make_sparsity_pattern(dof_handler,
-                                    pattern,
-                                    hanging_node_constraints,
-                                    /*keep constrained dofs =*/false);
     TrilinosWrappers::SparseMatrix matrix;
     matrix.reinit(dof_handler.locally_owned_dofs(),
                   dof_handler.locally_owned_dofs(),
@@ -437,6 +442,7 @@ namespace StepFriction2d
     // in $d\times d$ blocks has all that relaxing a node needs in one place.
     stiffness =
       make_node_block_matrix<dim>(matrix, pattern, *nodal_constraints);
+    pattern.reinit(0, 0);
   }
 
 
@@ -508,7 +514,8 @@ namespace StepFriction2d
   ContactProblem<dim>::solve(const unsigned int level)
   {
     Timer                     timer;
-    const LevelHierarchy<dim> hierarchy(dof_handler, *nodal_constraints);
+    const LevelHierarchy<dim> hierarchy(
+      dof_handler, *nodal_constraints, stiffness);
     const bool tresca = scene.friction_law() == FrictionLaw::tresca;
     const DiscreteProblem<dim> problem = {
       stiffness,
@@ -551,8 +558,7 @@ namespace StepFriction2d
     // relative to the largest nodal force and lengths to the largest
     // displacement or gap. Without a small certificate
     // <code>report.converged</code> is false.
-    CoulombSolver<dim> solver(
-      dof_handler, hierarchy, problem, parameters.solver);
+    CoulombSolver<dim> solver(hierarchy, problem, parameters.solver);
     setup_seconds += timer.wall_time();
 
     timer.restart();

@@ -123,6 +123,7 @@ namespace StepFriction3d
     // The discrete problem on the present mesh. As in two dimensions hanging
     // nodes are condensed and prescribed displacements are not.
     AffineConstraints<double>              hanging_node_constraints;
+    DynamicSparsityPattern                 pattern;
     std::unique_ptr<NodalConstraints<dim>> nodal_constraints;
     std::unique_ptr<ContactBoundary<dim>>  contact_boundary;
     NodeBlockMatrix<dim>                   stiffness;
@@ -276,9 +277,14 @@ namespace StepFriction3d
     prescribed.close();
 
     // From here on we think in nodes, those of the contact boundary in
-    // particular.
+    // particular. The sparsity pattern comes before the matrix since it tells
+    // whose displacements a process has to know.
+    make_stiffness_pattern(dof_handler, hanging_node_constraints, pattern);
     nodal_constraints = std::make_unique<NodalConstraints<dim>>(
-      dof_handler, hanging_node_constraints, prescribed);
+      dof_handler,
+      hanging_node_constraints,
+      prescribed,
+      coupled_dofs(dof_handler, pattern));
 
     setup_contact_boundary();
   }
@@ -358,13 +364,6 @@ namespace StepFriction3d
   void
   ContactProblem<dim>::assemble_system()
   {
-    const IndexSet relevant =
-      DoFTools::extract_locally_relevant_dofs(dof_handler);
-    DynamicSparsityPattern pattern(relevant);
-    DoFTools::make_sparsity_pattern(dof_handler,
-                                    pattern,
-                                    hanging_node_constraints,
-                                    /*keep constrained dofs =*/false);
     TrilinosWrappers::SparseMatrix matrix;
     matrix.reinit(dof_handler.locally_owned_dofs(),
                   dof_handler.locally_owned_dofs(),
@@ -463,6 +462,7 @@ namespace StepFriction3d
     // $3\times3$ blocks.
     stiffness =
       make_node_block_matrix<dim>(matrix, pattern, *nodal_constraints);
+    pattern.reinit(0, 0);
   }
 
 
@@ -569,7 +569,8 @@ namespace StepFriction3d
     // The levels, and the discrete problem: references to what we have set up.
     // With the law of Tresca the coefficient is absorbed in the given bounds.
     Timer                     timer;
-    const LevelHierarchy<dim> hierarchy(dof_handler, *nodal_constraints);
+    const LevelHierarchy<dim> hierarchy(
+      dof_handler, *nodal_constraints, stiffness);
     const bool tresca = scene.friction_law() == FrictionLaw::tresca;
     const DiscreteProblem<dim> problem = {
       stiffness,
@@ -606,8 +607,7 @@ namespace StepFriction3d
     // contact nodes only; and about a dozen vectors of three numbers per node,
     // four of which belong to the recombination. What is due to contact and
     // friction is a small part of all this.
-    CoulombSolver<dim> solver(
-      dof_handler, hierarchy, problem, parameters.solver);
+    CoulombSolver<dim> solver(hierarchy, problem, parameters.solver);
     setup_seconds += timer.wall_time();
 
     // In this call the time is spent, most of it in sweeps over the leaf mesh,

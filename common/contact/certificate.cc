@@ -1,8 +1,10 @@
 #include <common/contact/certificate.h>
+#include <common/parallel/reductions.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <vector>
 
@@ -92,6 +94,11 @@ namespace Friction
           std::max({length_scale,
                     std::abs(u.local_element(dim * node.node + d)),
                     std::abs(normal_component(node, u) - node.gap)});
+    const MPI_Comm comm   = constraints.communicator();
+    const auto     scales = max_over_processes(
+      std::array<double, 2>{{force_scale, length_scale}}, comm);
+    force_scale  = scales[0];
+    length_scale = scales[1];
     // Without any force or displacement there is nothing to compare with.
     if (force_scale == 0)
       force_scale = 1.;
@@ -137,6 +144,25 @@ namespace Friction
               std::pow(r_T[t] / force_scale - bound * u_T[t] / slip_norm, 2);
         raise(result.slip,
               std::min(std::sqrt(deviation), slip_norm / length_scale));
+      }
+
+    // The largest on any process. What is not a number must not get lost.
+    if (Utilities::MPI::n_mpi_processes(comm) > 1)
+      {
+        const std::array<double *, 6> values = {{&result.equilibrium,
+                                                 &result.penetration,
+                                                 &result.tension,
+                                                 &result.complementarity,
+                                                 &result.cone,
+                                                 &result.slip}};
+        std::array<double, 6>         all;
+        for (unsigned int i = 0; i < values.size(); ++i)
+          all[i] = std::isnan(*values[i])
+            ? std::numeric_limits<double>::infinity()
+            : *values[i];
+        all = max_over_processes(all, comm);
+        for (unsigned int i = 0; i < values.size(); ++i)
+          *values[i] = all[i];
       }
     return result;
   }

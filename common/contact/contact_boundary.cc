@@ -1,4 +1,5 @@
 #include <common/contact/contact_boundary.h>
+#include <common/parallel/collective_error.h>
 #include <common/scene/input_error.h>
 
 #include <deal.II/base/quadrature_lib.h>
@@ -87,16 +88,15 @@ namespace Friction
     const ContactNormal              contact_normal,
     const bool                       ignore_prescribed_penetration)
   {
-    // First collect, per vertex on Gamma_S, its point, the sum of the normals
-    // of the adjacent faces, and its share of the boundary measure.
-    struct Share
-    {
-      Point<dim>              point;
-      Tensor<1, dim>          normal;
-      double                  measure = 0.;
-      types::global_dof_index dof     = numbers::invalid_dof_index;
-    };
-    std::map<unsigned int, Share> shares;
+    // First sum up, per vertex on Gamma_S, the normals of the adjacent faces
+    // and the node's share of the boundary measure. Each process takes the
+    // faces of its own cells. Hanging nodes hand their measure on to their
+    // masters.
+    VectorType normals(constraints.partitioner());
+    VectorType measures(constraints.partitioner());
+
+    // Where the vertices are, also those of faces that are somebody else's.
+    std::map<unsigned int, Point<dim>> points;
 
     const FE_Q<dim>       scalar_element(1);
     const QGauss<dim - 1> quadrature(2);
@@ -111,18 +111,35 @@ namespace Friction
           if (cell->face(f)->at_boundary() &&
               cell->face(f)->boundary_id() == boundary_id)
             {
-              face_values.reinit(
-                typename Triangulation<dim>::cell_iterator(cell), f);
               const auto face = cell->face(f);
+              if (cell->is_locally_owned())
+                face_values.reinit(
+                  typename Triangulation<dim>::cell_iterator(cell), f);
               for (unsigned int v = 0; v < face->n_vertices(); ++v)
                 {
                   const unsigned int cell_vertex =
                     GeometryInfo<dim>::face_to_cell_vertices(f, v);
+                  const types::global_dof_index dof =
+                    cell->vertex_dof_index(cell_vertex, 0);
+                  const unsigned int node = constraints.node_of_dof(dof);
+                  points[node]            = face->vertex(v);
+                  if (!cell->is_locally_owned())
+                    continue;
+
                   double measure = 0;
                   for (const unsigned int q :
                        face_values.quadrature_point_indices())
                     measure += face_values.shape_value(cell_vertex, q) *
                       face_values.JxW(q);
+                  if (constraints.is_hanging(node))
+                    {
+                      for (const auto &master :
+                           *hanging.get_constraint_entries(dof))
+                        measures.local_element(
+                          dim * constraints.node_of_dof(master.first)) +=
+                          master.second * measure;
+                      continue;
+                    }
 
                   // The manifold knows the normal of the true boundary, of
                   // which the mesh is but a polygon.
@@ -130,93 +147,101 @@ namespace Friction
                     face->get_manifold().normal_vector(face, face->vertex(v));
                   if (normal * face_values.normal_vector(0) < 0)
                     normal *= -1.;
-
-                  const types::global_dof_index dof =
-                    cell->vertex_dof_index(cell_vertex, 0);
-                  Share &share = shares[constraints.node_of_dof(dof)];
-                  share.point  = face->vertex(v);
-                  share.dof    = dof;
-                  share.normal += measure * normal / normal.norm();
-                  share.measure += measure;
+                  for (unsigned int d = 0; d < dim; ++d)
+                    normals.local_element(dim * node + d) +=
+                      measure * normal[d] / normal.norm();
+                  measures.local_element(dim * node) += measure;
                 }
             }
+    normals.compress(VectorOperation::add);
+    measures.compress(VectorOperation::add);
 
-    // Hanging nodes hand their measure on to their masters.
-    for (const auto &entry : shares)
-      if (constraints.is_hanging(entry.first))
-        for (const auto &master :
-             *hanging.get_constraint_entries(entry.second.dof))
+    on_all_processes(constraints.communicator(), [&]() {
+      for (const auto &entry : points)
+        if (!constraints.is_hanging(entry.first) &&
+            entry.first < constraints.n_owned_nodes())
           {
-            const auto it = shares.find(constraints.node_of_dof(master.first));
-            if (it != shares.end())
-              it->second.measure += master.second * entry.second.measure;
+            Tensor<1, dim> normal;
+            for (unsigned int d = 0; d < dim; ++d)
+              normal[d] = normals.local_element(dim * entry.first + d);
+            add_node(entry.first,
+                     entry.second,
+                     contact_normal == ContactNormal::body
+                       ? normal / normal.norm()
+                       : obstacle.normal(entry.second),
+                     measures.local_element(dim * entry.first),
+                     constraints,
+                     obstacle,
+                     ignore_prescribed_penetration);
           }
+    });
+  }
 
-    for (const auto &entry : shares)
+
+
+  template <int dim>
+  void
+  ContactBoundary<dim>::add_node(const unsigned int           node,
+                                 const Point<dim>            &point,
+                                 Tensor<1, dim>               normal,
+                                 const double                 measure,
+                                 const NodalConstraints<dim> &constraints,
+                                 const Obstacle<dim>         &obstacle,
+                                 const bool ignore_prescribed_penetration)
+  {
+    // What rounding adds to the normal in a direction in which the node is
+    // held would keep the prescribed value from being read back exactly,
+    // and a node that is held at zero there from sticking.
+    for (unsigned int d = 0; d < dim; ++d)
+      if (constraints.is_prescribed(node, d) && std::abs(normal[d]) < 1e-8)
+        normal[d] = 0.;
+    const double gap = obstacle.gap(point, normal);
+    if (!std::isfinite(gap))
+      return;
+
+    Tensor<1, dim>              prescribed_value;
+    std::vector<Tensor<1, dim>> prescribed_tangents;
+    for (unsigned int d = 0; d < dim; ++d)
+      if (constraints.is_prescribed(node, d))
+        {
+          prescribed_value[d] =
+            constraints.prescribed_values().local_element(dim * node + d);
+          Tensor<1, dim> e;
+          e[d] = 1.;
+          prescribed_tangents.push_back(e);
+        }
+
+    if (constraints.is_fixed(node))
       {
-        const unsigned int node  = entry.first;
-        const Share       &share = entry.second;
-        if (constraints.is_hanging(node) || node >= constraints.n_owned_nodes())
-          continue;
-
-        Tensor<1, dim> normal = contact_normal == ContactNormal::body
-          ? share.normal / share.normal.norm()
-          : obstacle.normal(share.point);
-        // What rounding adds to the normal in a direction in which the node is
-        // held would keep the prescribed value from being read back exactly,
-        // and a node that is held at zero there from sticking.
-        for (unsigned int d = 0; d < dim; ++d)
-          if (constraints.is_prescribed(node, d) && std::abs(normal[d]) < 1e-8)
-            normal[d] = 0.;
-        const double gap = obstacle.gap(share.point, normal);
-        if (!std::isfinite(gap))
-          continue;
-
-        Tensor<1, dim>              prescribed_value;
-        std::vector<Tensor<1, dim>> prescribed_tangents;
-        for (unsigned int d = 0; d < dim; ++d)
-          if (constraints.is_prescribed(node, d))
-            {
-              prescribed_value[d] =
-                constraints.prescribed_values().local_element(dim * node + d);
-              Tensor<1, dim> e;
-              e[d] = 1.;
-              prescribed_tangents.push_back(e);
-            }
-
-        if (constraints.is_fixed(node))
-          {
-            if (!ignore_prescribed_penetration &&
-                prescribed_value * normal - gap >
-                  1e-8 * (std::abs(gap) + prescribed_value.norm()))
-              throw InputError(
-                "The prescribed displacement of the node at " +
-                describe(share.point) +
-                ", which also lies on the contact boundary, pushes it into the "
-                "obstacle by " +
-                std::to_string(prescribed_value * normal - gap) +
-                ": prescribe a smaller displacement there or end the contact "
-                "boundary before that node, or set 'Contact/Ignore prescribed "
-                "penetration'.");
-            continue;
-          }
-        for (const auto &e : prescribed_tangents)
-          if (std::abs(e * normal) > 1e-8)
-            throw InputError(
-              "At " + describe(share.point) +
-              " on the contact boundary a displacement component is prescribed "
-              "that has a part in normal direction, so that it competes with "
-              "contact: prescribe all components there, or only tangential "
-              "ones.");
-
-        nodes.push_back(
-          {node,
-           share.point,
-           make_frame<dim>(normal, prescribed_tangents),
-           gap,
-           share.measure,
-           static_cast<unsigned int>(dim - 1 - prescribed_tangents.size())});
+        if (!ignore_prescribed_penetration &&
+            prescribed_value * normal - gap >
+              1e-8 * (std::abs(gap) + prescribed_value.norm()))
+          throw InputError(
+            "The prescribed displacement of the node at " + describe(point) +
+            ", which also lies on the contact boundary, pushes it into the "
+            "obstacle by " +
+            std::to_string(prescribed_value * normal - gap) +
+            ": prescribe a smaller displacement there or end the contact "
+            "boundary before that node, or set 'Contact/Ignore prescribed "
+            "penetration'.");
+        return;
       }
+    for (const auto &e : prescribed_tangents)
+      if (std::abs(e * normal) > 1e-8)
+        throw InputError(
+          "At " + describe(point) +
+          " on the contact boundary a displacement component is prescribed "
+          "that has a part in normal direction, so that it competes with "
+          "contact: prescribe all components there, or only tangential "
+          "ones.");
+
+    nodes.push_back(
+      {node,
+       point,
+       make_frame<dim>(normal, prescribed_tangents),
+       gap,
+       measure,
+       static_cast<unsigned int>(dim - 1 - prescribed_tangents.size())});
   }
 
 

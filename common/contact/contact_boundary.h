@@ -56,12 +56,15 @@ namespace Friction
    * their masters and carry nothing of their own; their share of the boundary
    * measure goes to the masters. Nodes that are entirely prescribed, and nodes
    * whose normal never meets the obstacle, are left out.
+   *
+   * Each process has the contact nodes that it owns.
    */
   template <int dim>
   class ContactBoundary
   {
   public:
     /**
+     * Collective; errors are thrown on all processes.
      * @param ignore_prescribed_penetration  leave out nodes that are prescribed
      *         to penetrate the obstacle, instead of throwing.
      * @throws InputError if a node is prescribed to penetrate the obstacle, or
@@ -103,6 +106,14 @@ namespace Friction
 
   private:
     std::vector<ContactNode<dim>> nodes;
+
+    void add_node(const unsigned int           node,
+                  const Point<dim>            &point,
+                  Tensor<1, dim>               normal,
+                  const double                 measure,
+                  const NodalConstraints<dim> &constraints,
+                  const Obstacle<dim>         &obstacle,
+                  const bool                   ignore_prescribed_penetration);
   };
 
 

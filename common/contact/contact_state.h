@@ -14,6 +14,9 @@ namespace Friction
    * Contact and stick are decided by the local problems and kept as flags here,
    * never read off the displacement again: after a rotation to the local frame
    * and back, $u_n = g$ holds only up to rounding.
+   *
+   * Each process has the state of its own contact nodes, and all counts are of
+   * these.
    */
   class ContactState
   {
@@ -23,7 +26,8 @@ namespace Friction
      * @param with_friction  without friction nothing is stored for it.
      */
     ContactState(const unsigned int n_nodes, const bool with_friction)
-      : contact(n_nodes, 0)
+      : with_friction(with_friction)
+      , contact(n_nodes, 0)
       , stick(with_friction ? n_nodes : 0, 0)
       , force(with_friction ? n_nodes : 0, 0.)
     {}
@@ -31,7 +35,7 @@ namespace Friction
     bool
     has_friction() const
     {
-      return !stick.empty();
+      return with_friction;
     }
 
     bool
@@ -103,6 +107,7 @@ namespace Friction
     }
 
   private:
+    bool                with_friction;
     std::vector<char>   contact;
     std::vector<char>   stick;
     std::vector<double> force;

@@ -10,10 +10,14 @@ namespace Friction
   NodalConstraints<dim>::NodalConstraints(
     const DoFHandler<dim>           &dof_handler,
     const AffineConstraints<double> &hanging,
-    const AffineConstraints<double> &dirichlet)
+    const AffineConstraints<double> &dirichlet,
+    const IndexSet                  &coupled)
   {
-    const IndexSet relevant =
-      DoFTools::extract_locally_relevant_dofs(dof_handler);
+    IndexSet relevant    = DoFTools::extract_locally_relevant_dofs(dof_handler);
+    const IndexSet known = relevant;
+    if (coupled.size() > 0)
+      relevant.add_indices(coupled);
+    relevant.compress();
     leaf_partitioner = std::make_shared<Utilities::MPI::Partitioner>(
       dof_handler.locally_owned_dofs(),
       relevant,
@@ -24,9 +28,19 @@ namespace Friction
     AssertThrow(n_dofs % dim == 0, ExcInternalError());
     flags.resize(n_dofs / dim, 0);
     values.reinit(leaf_partitioner);
+    node_numbering = NodeNumbering(
+      NodeDistribution(leaf_partitioner->locally_owned_size() / dim,
+                       Compatibility::mpi_communicator(dof_handler)));
+    for (unsigned int local = leaf_partitioner->locally_owned_size();
+         local < n_dofs;
+         local += dim)
+      node_numbering.add(leaf_partitioner->local_to_global(local) / dim);
+
     for (unsigned int local = 0; local < n_dofs; ++local)
       {
         const auto dof = leaf_partitioner->local_to_global(local);
+        if (!known.is_element(dof))
+          continue;
         if (hanging.is_constrained(dof))
           flags[local / dim] |= hanging_bit;
         else if (dirichlet.is_constrained(dof))
@@ -34,6 +48,20 @@ namespace Friction
             flags[local / dim] |= (1u << (local % dim));
             values.local_element(local) = dirichlet.get_inhomogeneity(dof);
           }
+      }
+
+    // The owner of a node knows all about it; whoever has it as a ghost may
+    // not.
+    if (node_numbering.distribution().n_processes() > 1)
+      {
+        values.update_ghost_values();
+        VectorType owners_flags(leaf_partitioner);
+        for (unsigned int node = 0; node < n_owned_nodes(); ++node)
+          owners_flags.local_element(dim * node) = flags[node];
+        owners_flags.update_ghost_values();
+        for (unsigned int node = n_owned_nodes(); node < n_nodes(); ++node)
+          flags[node] =
+            static_cast<unsigned char>(owners_flags.local_element(dim * node));
       }
   }
 

@@ -1,6 +1,8 @@
 #ifndef friction_contact_nodal_constraints_h
 #define friction_contact_nodal_constraints_h
 
+#include <common/parallel/node_distribution.h>
+
 #include <deal.II/base/partitioner.h>
 
 #include <deal.II/dofs/dof_handler.h>
@@ -25,6 +27,12 @@ namespace Friction
    * A node is a vertex with its dim degrees of freedom, numbered one after the
    * other by FESystem(FE_Q(1),dim); node i has the local degrees of freedom
    * dim*i,...,dim*i+dim-1, locally owned nodes first, then ghosts.
+   *
+   * Ghosts are the nodes of all cells that a process knows, and those that the
+   * rows of its own nodes in the stiffness matrix couple to. The latter are not
+   * always among the former: where a node is master of a hanging node, its row
+   * reaches all cells around that node, and a process that owns the master may
+   * know only some of them.
    */
   template <int dim>
   class NodalConstraints
@@ -34,16 +42,35 @@ namespace Friction
      * @param hanging    hanging node constraints only.
      * @param dirichlet  Dirichlet values only (lines without entries).
      * Both must know the locally relevant degrees of freedom.
+     * @param coupled    degrees of freedom that owned rows of the stiffness
+     *                   matrix couple to, see coupled_dofs(). With one process
+     *                   it may be left out.
+     *
+     * Collective.
      */
     NodalConstraints(const DoFHandler<dim>           &dof_handler,
                      const AffineConstraints<double> &hanging,
-                     const AffineConstraints<double> &dirichlet);
+                     const AffineConstraints<double> &dirichlet,
+                     const IndexSet                  &coupled = IndexSet());
 
     /** The distribution of degrees of freedom over processes, with ghosts. */
     const std::shared_ptr<const Utilities::MPI::Partitioner> &
     partitioner() const
     {
       return leaf_partitioner;
+    }
+
+    /** The same for nodes; local numbers agree. */
+    const NodeNumbering &
+    numbering() const
+    {
+      return node_numbering;
+    }
+
+    MPI_Comm
+    communicator() const
+    {
+      return node_numbering.distribution().communicator();
     }
 
     unsigned int
@@ -104,7 +131,8 @@ namespace Friction
 
     /**
      * Prescribes the present value @p value of a component of a node: this is
-     * how the bonded comparison problem is made out of a contact problem.
+     * how the bonded comparison problem is made out of a contact problem. To be
+     * called on all processes that know the node.
      */
     void prescribe(const unsigned int node,
                    const unsigned int component,
@@ -115,6 +143,7 @@ namespace Friction
     static constexpr unsigned char all_components = (1u << dim) - 1;
 
     std::shared_ptr<const Utilities::MPI::Partitioner> leaf_partitioner;
+    NodeNumbering                                      node_numbering;
     std::vector<unsigned char>                         flags;
     VectorType                                         values;
   };

@@ -1,5 +1,6 @@
-#include <common/compatibility.h>
 #include <common/multigrid/coarse_cycle.h>
+#include <common/parallel/communication_count.h>
+#include <common/parallel/reductions.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,8 +29,7 @@ namespace Friction
 
 
   template <int dim>
-  CoarseCycle<dim>::CoarseCycle(const DoFHandler<dim>       &dof_handler,
-                                const NodeBlockMatrix<dim>  &leaf_matrix,
+  CoarseCycle<dim>::CoarseCycle(const NodeBlockMatrix<dim>  &leaf_matrix,
                                 const LevelHierarchy<dim>   &hierarchy,
                                 const NodalConstraints<dim> &constraints,
                                 const Cycle                  cycle,
@@ -40,16 +40,18 @@ namespace Friction
     , smoothing_steps(smoothing_steps)
     , matrices(leaf_matrix, hierarchy, constraints)
   {
-    coarsest = std::make_unique<CoarsestSolver<dim>>(dof_handler, matrices);
+    coarsest = std::make_unique<CoarsestSolver<dim>>(hierarchy, matrices);
     const unsigned int n = matrices.n_levels();
-    rhs.resize(n);
     for (unsigned int k = 0; k < n; ++k)
-      rhs[k].reinit(dof_handler.locally_owned_mg_dofs(k),
-                    Compatibility::mpi_communicator(dof_handler));
+      {
+        const auto &level = hierarchy.level(k);
+        rhs.emplace_back(dim * level.n_local_nodes());
+        schedules.emplace_back(matrices.matrix(k), level.relaxed_nodes());
+        coupled_ghosts.emplace_back(level.numbering(), level.coupled_ghosts());
+        transfer_ghosts.emplace_back(level.numbering(),
+                                     level.transfer_ghosts());
+      }
     correction = defect = work = rhs;
-    for (unsigned int k = 0; k < n; ++k)
-      schedules.emplace_back(matrices.matrix(k),
-                             hierarchy.level(k).relaxed_nodes());
     start.resize(n);
     for (unsigned int k = 1; k < n; ++k)
       start[k] = rhs[k - 1];
@@ -87,7 +89,11 @@ namespace Friction
     leaf_lower = &lower_bounds;
     leaf_upper = &upper_bounds;
     if (lower.empty())
-      lower = upper = rhs;
+      {
+        lower = upper = rhs;
+        for (const LevelVector &vector : rhs)
+          restricted_bounds.emplace_back(4 * vector.size());
+      }
     run(v, r);
   }
 
@@ -99,55 +105,36 @@ namespace Friction
   {
     leaf_residual = &r;
     v             = 0.;
-    for (auto &c : correction)
-      c = 0.;
-
-    const unsigned int finest = hierarchy.n_levels() - 1;
-    if (finest == 0)
-      {
-        // The coarsest mesh is the leaf mesh: no cycle, but a direct solve.
-        restrict_residual(0, finest_residual);
-        if (bounded)
-          restrict_bounds(0);
-        solve_coarsest();
-        for (const unsigned int node : hierarchy.level(0).own_nodes())
-          for (unsigned int d = 0; d < dim; ++d)
-            v.local_element(dim * hierarchy.level(0).leaf_node(node) + d) =
-              correction[0].local_element(dim * node + d);
-        matrices.current_truncation().apply(v.begin());
-        return;
-      }
+    for (LevelVector &c : correction)
+      std::fill(c.begin(), c.end(), 0.);
 
     // The finest level has no unknowns of its own: its leaf nodes' residuals
-    // are restricted as they are.
-    const auto        &level = hierarchy.level(finest);
-    const unsigned int below = finest - 1;
-    if (finest_residual.size() == 0)
-      finest_residual.reinit(dim * level.n_nodes());
-    for (const unsigned int node : level.own_nodes())
-      for (unsigned int d = 0; d < dim; ++d)
-        finest_residual.local_element(dim * node + d) =
-          r.local_element(dim * level.leaf_node(node) + d);
-    restrict_residual(below, finest_residual);
+    // are restricted as they are. If it is the coarsest one, too, there is no
+    // cycle, but a direct solve.
+    const unsigned int finest = hierarchy.n_levels() - 1;
+    const unsigned int top    = finest == 0 ? 0 : finest - 1;
+    restrict_residual(top);
     if (bounded)
-      restrict_bounds(below);
-
-    for (unsigned int i = 0; i < (below == 0 ? 1 : cycle_parameter); ++i)
-      visit(below);
+      restrict_bounds(top);
+    for (unsigned int i = 0; i < (top == 0 ? 1 : cycle_parameter); ++i)
+      visit(top);
 
     // Each leaf node takes its correction from its finest level.
-    for (unsigned int k = 0; k <= finest; ++k)
-      for (const unsigned int node : hierarchy.level(k).own_nodes())
-        {
-          const unsigned int leaf  = hierarchy.level(k).leaf_node(node);
-          double            *value = v.begin() + dim * leaf;
-          if (k < finest)
-            for (unsigned int d = 0; d < dim; ++d)
-              value[d] = correction[k].local_element(dim * node + d);
-          else
-            add_prolongated<dim>(
-              level.parents(), node, correction[below].begin(), value);
-        }
+    {
+      const CommunicationPhase phase(SolverPhase::transfer);
+      transfer_ghosts[top].update(correction[top].data(), dim);
+    }
+    for (unsigned int k = 0; k <= top; ++k)
+      for (const auto &own : hierarchy.level(k).own_nodes())
+        for (unsigned int d = 0; d < dim; ++d)
+          v.local_element(dim * own.leaf + d) =
+            correction[k][dim * own.node + d];
+    if (finest > top)
+      for (const auto &own : hierarchy.level(finest).own_nodes())
+        add_prolongated<dim>(hierarchy.level(finest).parents(),
+                             own.node,
+                             correction[top].data(),
+                             v.begin() + dim * own.leaf);
     matrices.current_truncation().apply(v.begin());
   }
 
@@ -167,39 +154,48 @@ namespace Friction
       }
 
     const NodeWeights &parents = hierarchy.level(k).parents();
-    VectorType        &c       = correction[k];
-    VectorType        &coarse  = correction[k - 1];
-    VectorType        &before  = start[k];
+    const unsigned int n_nodes = hierarchy.level(k).n_nodes();
+    LevelVector       &c       = correction[k];
+    LevelVector       &coarse  = correction[k - 1];
+    LevelVector       &before  = start[k];
     before                     = coarse;
     if (cycle_parameter == 1)
-      relax(k, false, defect[k].begin());
+      relax(k, false, defect[k].data());
     else
       {
         // Defect of everything but the part inherited from below.
         relax(k, false);
-        VectorType &own = work[k];
-        own             = c;
-        for (unsigned int node = 0; node < hierarchy.level(k).n_nodes(); ++node)
+        LevelVector &own = work[k];
+        own              = c;
+        for (unsigned int node = 0; node < n_nodes; ++node)
           {
             double inherited[dim] = {};
-            add_prolongated<dim>(parents, node, coarse.begin(), inherited);
+            add_prolongated<dim>(parents, node, coarse.data(), inherited);
             for (unsigned int d = 0; d < dim; ++d)
-              own.local_element(dim * node + d) -= inherited[d];
+              own[dim * node + d] -= inherited[d];
           }
+        const CommunicationPhase phase(SolverPhase::coarse_sweeps);
+        coupled_ghosts[k].update(own.data(), dim);
         matrices.matrix(k).residual(
-          defect[k].begin(), rhs[k].begin(), own.begin());
+          defect[k].data(), rhs[k].data(), own.data());
       }
-    restrict_residual(k - 1, defect[k]);
+    restrict_residual(k - 1);
     if (bounded)
       restrict_bounds(k - 1);
 
     for (unsigned int i = 0; i < (k == 1 ? 1 : cycle_parameter); ++i)
       visit(k - 1);
 
-    before.sadd(-1., 1., coarse);
-    for (unsigned int node = 0; node < hierarchy.level(k).n_nodes(); ++node)
-      add_prolongated<dim>(
-        parents, node, before.begin(), c.begin() + dim * node);
+    {
+      const CommunicationPhase phase(SolverPhase::transfer);
+      transfer_ghosts[k - 1].update(coarse.data(), dim);
+      for (unsigned int i = 0; i < coarse.size(); ++i)
+        before[i] = coarse[i] - before[i];
+      for (unsigned int node = 0; node < n_nodes; ++node)
+        add_prolongated<dim>(
+          parents, node, before.data(), c.data() + dim * node);
+      coupled_ghosts[k].update(c.data(), dim);
+    }
 
     relax(k, true);
   }
@@ -212,14 +208,16 @@ namespace Friction
                           const bool         backwards,
                           double            *defect_after)
   {
+    const CommunicationPhase phase(SolverPhase::coarse_sweeps);
     if (!bounded)
       gauss_seidel_sweeps<dim>(schedules[k],
                                matrices.matrix(k),
                                matrices.inverse_diagonals(k),
-                               rhs[k].begin(),
-                               correction[k].begin(),
+                               rhs[k].data(),
+                               correction[k].data(),
                                backwards,
                                smoothing_steps,
+                               coupled_ghosts[k],
                                defect_after);
     else
       {
@@ -227,7 +225,7 @@ namespace Friction
           relax_within_bounds(k, hierarchy.level(k).relaxed_nodes(), backwards);
         if (defect_after != nullptr)
           matrices.matrix(k).residual(
-            defect_after, rhs[k].begin(), correction[k].begin());
+            defect_after, rhs[k].data(), correction[k].data());
       }
   }
 
@@ -243,9 +241,9 @@ namespace Friction
                                         const bool         backwards)
   {
     const NodeBlockMatrix<dim> &B = matrices.matrix(k);
-    double                     *c = correction[k].begin();
-    const double               *b = rhs[k].begin(), *lo = lower[k].begin(),
-                 *up = upper[k].begin();
+    double                     *c = correction[k].data();
+    const double               *b = rhs[k].data(), *lo = lower[k].data(),
+                 *up = upper[k].data();
 
     const auto relax_node = [&](const unsigned int i) {
       if (B.row_begin(i) == B.row_end(i))
@@ -262,8 +260,8 @@ namespace Friction
           c[dim * i + d] + step[d] >= lo[dim * i + d];
       if (!inside)
         {
-          const double  *block = B.block(B.row_begin(i));
-          NodeValue<dim> before;
+          const NodeBlock<dim> block = matrices.majorized_diagonal(k, i);
+          NodeValue<dim>       before;
           step = NodeValue<dim>{};
           for (unsigned int sweep = 0; sweep < 10; ++sweep)
             {
@@ -298,6 +296,7 @@ namespace Friction
       for (auto range = nodes.rbegin(); range != nodes.rend(); ++range)
         for (unsigned int i = range->second; i-- > range->first;)
           relax_node(i);
+    coupled_ghosts[k].update(c, dim);
   }
 
 
@@ -309,32 +308,42 @@ namespace Friction
   void
   CoarseCycle<dim>::solve_coarsest()
   {
-    VectorType &c = correction[0];
+    const CommunicationPhase phase(SolverPhase::coarsest);
+    const MPI_Comm           comm     = constraints.communicator();
+    const unsigned int       n_values = dim * hierarchy.level(0).n_nodes();
+    LevelVector             &c        = correction[0];
     if (!bounded)
       {
-        coarsest->solve(c, rhs[0]);
+        coarsest->solve(c.data(), rhs[0].data());
         return;
       }
 
-    VectorType &trial = work[0];
-    coarsest->solve(trial, rhs[0]);
+    LevelVector &trial = work[0];
+    coarsest->solve(trial.data(), rhs[0].data());
     bool inside = true;
-    for (unsigned int i = 0; i < trial.locally_owned_size(); ++i)
-      inside = inside && trial.local_element(i) <= upper[0].local_element(i) &&
-        trial.local_element(i) >= lower[0].local_element(i);
-    if (inside)
+    for (unsigned int i = 0; i < n_values; ++i)
+      inside = inside && trial[i] <= upper[0][i] && trial[i] >= lower[0][i];
+    if (!true_on_any_process(!inside, comm))
       {
-        c = trial;
+        std::copy_n(trial.begin(), n_values, c.begin());
         return;
       }
     const NodeRanges all = {{0, hierarchy.level(0).n_nodes()}};
+    coupled_ghosts[0].update(c.data(), dim);
     for (unsigned int sweep = 0; sweep < 50; ++sweep)
       {
         trial = c;
         relax_within_bounds(0, all, false);
         relax_within_bounds(0, all, true);
-        trial -= c;
-        if (trial.linfty_norm() <= 1e-6 * c.linfty_norm())
+        double change = 0, size = 0;
+        for (unsigned int i = 0; i < n_values; ++i)
+          {
+            change = std::max(change, std::abs(c[i] - trial[i]));
+            size   = std::max(size, std::abs(c[i]));
+          }
+        change = max_over_processes(change, comm);
+        size   = max_over_processes(size, comm);
+        if (change <= 1e-6 * size)
           break;
       }
   }
@@ -342,80 +351,86 @@ namespace Friction
 
 
   // The residual of a level: that of its own leaf nodes, and what the next
-  // finer level leaves over.
+  // finer level leaves over. A process contributes what it owns of these, to
+  // nodes of others as well.
   template <int dim>
   void
-  CoarseCycle<dim>::restrict_residual(const unsigned int k,
-                                      const VectorType  &finer_defect)
+  CoarseCycle<dim>::restrict_residual(const unsigned int k)
   {
-    const auto &level = hierarchy.level(k);
-    VectorType &r     = rhs[k];
-    for (unsigned int node = 0; node < level.n_nodes(); ++node)
+    const CommunicationPhase phase(SolverPhase::transfer);
+    const auto              &level = hierarchy.level(k);
+    LevelVector             &r     = rhs[k];
+    const double *finer = k + 2 < hierarchy.n_levels() ? defect[k + 1].data()
+                                                       : leaf_residual->begin();
+    for (unsigned int node = 0; node < level.n_local_nodes(); ++node)
       {
         double sum[dim] = {};
         for (auto child = level.children().begin(node);
              child != level.children().end(node);
              ++child)
           for (unsigned int d = 0; d < dim; ++d)
-            sum[d] +=
-              child->weight * finer_defect.local_element(dim * child->node + d);
+            sum[d] += child->weight * finer[dim * child->node + d];
         for (unsigned int d = 0; d < dim; ++d)
-          r.local_element(dim * node + d) = sum[d];
+          r[dim * node + d] = sum[d];
       }
-    for (const unsigned int node : level.own_nodes())
+    for (const auto &own : level.own_nodes())
       for (unsigned int d = 0; d < dim; ++d)
-        r.local_element(dim * node + d) +=
-          leaf_residual->local_element(dim * level.leaf_node(node) + d);
+        r[dim * own.node + d] +=
+          leaf_residual->local_element(dim * own.leaf + d);
+    transfer_ghosts[k].collect(r.data(), dim, GhostExchange::Combine::add);
   }
 
 
 
   // Monotone restriction: what the finer nodes in the support of a coarse
-  // function have left, added to what the coarse node has already moved.
+  // function have left, added to what the coarse node has already moved; and
+  // the bounds of the level's own leaf nodes, which are bounds of all of it.
+  // The lower bounds are turned around, so that there are only minima.
   template <int dim>
   void
   CoarseCycle<dim>::restrict_bounds(const unsigned int k)
   {
-    const auto &level       = hierarchy.level(k);
-    const bool  has_finer   = (k + 1 < hierarchy.n_levels());
-    const auto &finer       = hierarchy.level(has_finer ? k + 1 : k);
-    const bool  finer_last  = (k + 2 == hierarchy.n_levels());
-    const auto  finer_bound = [&](const bool         is_upper,
-                                 const unsigned int node,
-                                 const unsigned int d) {
-      const unsigned int leaf = finer.leaf_node(node);
+    const CommunicationPhase phase(SolverPhase::transfer);
+    const auto              &level      = hierarchy.level(k);
+    const bool               finer_last = (k + 2 >= hierarchy.n_levels());
+    LevelVector             &bounds     = restricted_bounds[k];
+    const auto room = [&](const bool is_upper, const unsigned int i) {
       if (finer_last)
-        return constraints.is_hanging(leaf)
-           ? (is_upper ? infinity : -infinity)
-           : (is_upper ? leaf_upper : leaf_lower)->local_element(dim * leaf + d);
-      return (is_upper ? upper : lower)[k + 1].local_element(dim * node + d) -
-        correction[k + 1].local_element(dim * node + d);
+        return is_upper ? leaf_upper->local_element(i)
+                        : -leaf_lower->local_element(i);
+      return is_upper ? upper[k + 1][i] - correction[k + 1][i]
+                      : correction[k + 1][i] - lower[k + 1][i];
     };
 
-    for (unsigned int node = 0; node < level.n_nodes(); ++node)
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          double up = infinity, lo = -infinity;
-          for (auto child = level.children().begin(node);
-               child != level.children().end(node);
-               ++child)
+    std::fill(bounds.begin(), bounds.end(), infinity);
+    for (unsigned int node = 0; node < level.n_local_nodes(); ++node)
+      for (auto child = level.children().begin(node);
+           child != level.children().end(node);
+           ++child)
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int side = 0; side < 2; ++side)
             {
-              up = std::min(up, finer_bound(true, child->node, d));
-              lo = std::max(lo, finer_bound(false, child->node, d));
+              double &bound = bounds[4 * (dim * node + d) + side];
+              bound = std::min(bound, room(side == 0, dim * child->node + d));
             }
-          const double moved = correction[k].local_element(dim * node + d);
-          upper[k].local_element(dim * node + d) = moved + std::max(0., up);
-          lower[k].local_element(dim * node + d) = moved + std::min(0., lo);
-        }
-    for (const unsigned int node : level.own_nodes())
+    for (const auto &own : level.own_nodes())
       for (unsigned int d = 0; d < dim; ++d)
         {
-          const unsigned int leaf = dim * level.leaf_node(node) + d;
-          double            &up   = upper[k].local_element(dim * node + d);
-          double            &lo   = lower[k].local_element(dim * node + d);
-          up = std::min(up, leaf_upper->local_element(leaf));
-          lo = std::max(lo, leaf_lower->local_element(leaf));
+          double            *bound = &bounds[4 * (dim * own.node + d)];
+          const unsigned int leaf  = dim * own.leaf + d;
+          bound[2] = std::min(bound[2], leaf_upper->local_element(leaf));
+          bound[3] = std::min(bound[3], -leaf_lower->local_element(leaf));
         }
+    transfer_ghosts[k].collect(
+      bounds.data(), 4 * dim, GhostExchange::Combine::minimum);
+
+    for (unsigned int i = 0; i < dim * level.n_nodes(); ++i)
+      {
+        const double *bound = &bounds[4 * i];
+        const double  moved = correction[k][i];
+        upper[k][i] = std::min(moved + std::max(0., bound[0]), bound[2]);
+        lower[k][i] = std::max(moved - std::max(0., bound[1]), -bound[3]);
+      }
   }
 
 
@@ -425,10 +440,16 @@ namespace Friction
   CoarseCycle<dim>::memory_consumption() const
   {
     std::size_t bytes = matrices.memory_consumption();
-    for (const auto &v :
-         {&rhs, &correction, &start, &defect, &work, &lower, &upper})
-      for (const VectorType &vector : *v)
-        bytes += vector.memory_consumption();
+    for (const auto &v : {&rhs,
+                          &correction,
+                          &start,
+                          &defect,
+                          &work,
+                          &lower,
+                          &upper,
+                          &restricted_bounds})
+      for (const LevelVector &vector : *v)
+        bytes += vector.capacity() * sizeof(double);
     return bytes;
   }
 

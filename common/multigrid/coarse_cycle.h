@@ -4,9 +4,8 @@
 #include <common/multigrid/coarsest_solver.h>
 #include <common/multigrid/level_matrices.h>
 #include <common/multigrid/sweep_schedule.h>
+#include <common/parallel/ghost_exchange.h>
 #include <common/scene/solver_settings.h>
-
-#include <deal.II/dofs/dof_handler.h>
 
 #include <memory>
 #include <vector>
@@ -39,8 +38,7 @@ namespace Friction
   {
   public:
     /** The arguments given by reference are kept. */
-    CoarseCycle(const DoFHandler<dim>       &dof_handler,
-                const NodeBlockMatrix<dim>  &leaf_matrix,
+    CoarseCycle(const NodeBlockMatrix<dim>  &leaf_matrix,
                 const LevelHierarchy<dim>   &hierarchy,
                 const NodalConstraints<dim> &constraints,
                 const Cycle                  cycle,
@@ -85,15 +83,19 @@ namespace Friction
     std::unique_ptr<CoarsestSolver<dim>> coarsest;
     std::vector<SweepSchedule<dim>>      schedules;
 
+    // Ghosts that rows couple to, and those that transfers need.
+    std::vector<GhostExchange> coupled_ghosts, transfer_ghosts;
+
     // Per level: right hand side, correction, what the next coarser level had
-    // when the visit began, and vectors of work. The corrections of a W-cycle
-    // accumulate over its visits to a level.
-    std::vector<VectorType> rhs, correction, start, defect, work;
-    VectorType              finest_residual;
+    // when the visit began, and vectors of work; values of owned nodes, then of
+    // ghosts. The corrections of a W-cycle accumulate over its visits to a
+    // level.
+    using LevelVector = std::vector<double>;
+    std::vector<LevelVector> rhs, correction, start, defect, work;
 
     // Per level, only if bounds are in use: bounds of the correction.
-    bool                    bounded = false;
-    std::vector<VectorType> lower, upper;
+    bool                     bounded = false;
+    std::vector<LevelVector> lower, upper, restricted_bounds;
 
     const VectorType *leaf_residual = nullptr;
     const VectorType *leaf_lower    = nullptr;
@@ -113,8 +115,7 @@ namespace Friction
 
     void solve_coarsest();
 
-    void restrict_residual(const unsigned int level,
-                           const VectorType  &finer_defect);
+    void restrict_residual(const unsigned int level);
 
     void restrict_bounds(const unsigned int level);
   };

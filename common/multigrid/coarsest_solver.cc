@@ -1,5 +1,6 @@
-#include <common/compatibility.h>
 #include <common/multigrid/coarsest_solver.h>
+#include <common/parallel/ghost_exchange.h>
+#include <common/parallel/reductions.h>
 
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 
@@ -8,27 +9,41 @@
 namespace Friction
 {
   template <int dim>
-  CoarsestSolver<dim>::CoarsestSolver(const DoFHandler<dim>    &dof_handler,
-                                      const LevelMatrices<dim> &level_matrices)
-    : level_matrices(level_matrices)
+  CoarsestSolver<dim>::CoarsestSolver(const LevelHierarchy<dim> &hierarchy,
+                                      const LevelMatrices<dim>  &level_matrices)
+    : hierarchy(hierarchy)
+    , level_matrices(level_matrices)
     , control(1, 0.)
   {
-    const NodeBlockMatrix<dim> &B     = level_matrices.matrix(0);
-    const IndexSet             &owned = dof_handler.locally_owned_mg_dofs(0);
-    rhs.reinit(owned, Compatibility::mpi_communicator(dof_handler));
+    const NodeBlockMatrix<dim> &B = level_matrices.matrix(0);
+    const NodeDistribution     &nodes =
+      hierarchy.level(0).numbering().distribution();
+    IndexSet owned(dim * nodes.n_global());
+    owned.add_range(dim * nodes.global(0), dim * nodes.global(nodes.n_owned()));
+    rhs.reinit(owned, nodes.communicator());
+    solution.reinit(rhs);
 
     DynamicSparsityPattern pattern(owned.size(), owned.size(), owned);
     for (unsigned int i = 0; i < B.n_rows(); ++i)
       for (unsigned int r = 0; r < dim; ++r)
         {
-          pattern.add(dim * i + r, dim * i + r);
+          pattern.add(dof(i, r), dof(i, r));
           for (std::size_t e = B.row_begin(i); e < B.row_end(i); ++e)
             for (unsigned int c = 0; c < dim; ++c)
-              pattern.add(dim * i + r, dim * B.column(e) + c);
+              pattern.add(dof(i, r), dof(B.column(e), c));
         }
-    matrix.reinit(
-      owned, owned, pattern, Compatibility::mpi_communicator(dof_handler));
+    matrix.reinit(owned, owned, pattern, nodes.communicator());
     factorize();
+  }
+
+
+
+  template <int dim>
+  types::global_dof_index
+  CoarsestSolver<dim>::dof(const unsigned int node,
+                           const unsigned int component) const
+  {
+    return dim * hierarchy.level(0).numbering().global(node) + component;
   }
 
 
@@ -44,19 +59,23 @@ namespace Friction
     for (unsigned int i = 0; i < B.n_rows(); ++i)
       if (B.row_begin(i) != B.row_end(i))
         scale = std::max(scale, trace<dim>(B.block(B.row_begin(i))));
+    scale = max_over_processes(scale, rhs.get_mpi_communicator());
     if (scale == 0)
       scale = 1.;
 
-    // M_i B_ij M_j with M = I - N, and a multiple of N on the diagonal.
-    const auto complement = [&](const unsigned int i) {
-      NodeBlock<dim> M = identity_block<dim>();
+    // M_i B_ij M_j with M = I - N, and a multiple of N on the diagonal; at the
+    // ghosts their owners know N.
+    const auto                 &level = hierarchy.level(0);
+    std::vector<NodeBlock<dim>> complements(level.n_local_nodes(),
+                                            identity_block<dim>());
+    for (unsigned int i = 0; i < B.n_rows(); ++i)
       for (unsigned int d = 0; d < dim * dim; ++d)
-        M[d] -= nulls[i][d];
-      return M;
-    };
+        complements[i][d] -= nulls[i][d];
+    GhostExchange(level.numbering(), level.coupled_ghosts())
+      .update(complements.front().data(), dim * dim);
     for (unsigned int i = 0; i < B.n_rows(); ++i)
       {
-        const NodeBlock<dim> Mi        = complement(i);
+        const NodeBlock<dim> Mi        = complements[i];
         bool                 empty_row = true;
         for (std::size_t e = B.row_begin(i); e < B.row_end(i); ++e)
           {
@@ -64,17 +83,17 @@ namespace Friction
             const unsigned int j = B.column(e);
             NodeBlock<dim>     block;
             std::copy_n(B.block(e), dim * dim, block.begin());
-            block = times<dim>(times<dim>(Mi, block), complement(j));
+            block = times<dim>(times<dim>(Mi, block), complements[j]);
             for (unsigned int c = 0; c < dim; ++c)
               for (unsigned int r = 0; r < dim; ++r)
-                matrix.set(dim * i + r,
-                           dim * j + c,
+                matrix.set(dof(i, r),
+                           dof(j, c),
                            block[c * dim + r] +
                              (i == j ? scale * nulls[i][c * dim + r] : 0.));
           }
         if (empty_row)
           for (unsigned int r = 0; r < dim; ++r)
-            matrix.set(dim * i + r, dim * i + r, scale);
+            matrix.set(dof(i, r), dof(i, r), scale);
       }
     matrix.compress(VectorOperation::insert);
 
@@ -91,8 +110,9 @@ namespace Friction
       }
     catch (const ExceptionBase &)
       {
-        for (unsigned int i = 0; i < dim * B.n_rows(); ++i)
-          matrix.add(i, i, 1e-10 * scale);
+        for (unsigned int i = 0; i < B.n_rows(); ++i)
+          for (unsigned int r = 0; r < dim; ++r)
+            matrix.add(dof(i, r), dof(i, r), 1e-10 * scale);
         matrix.compress(VectorOperation::add);
         factorize_matrix();
       }
@@ -119,14 +139,15 @@ namespace Friction
 
   template <int dim>
   void
-  CoarsestSolver<dim>::solve(VectorType &c, const VectorType &r)
+  CoarsestSolver<dim>::solve(double *c, const double *r)
   {
     if (version != level_matrices.coarsest_version())
       factorize();
-    rhs = r;
+    std::copy_n(r, rhs.locally_owned_size(), rhs.begin());
     project(rhs);
-    solver->solve(c, rhs);
-    project(c);
+    solver->solve(solution, rhs);
+    project(solution);
+    std::copy_n(solution.begin(), solution.locally_owned_size(), c);
   }
 
 

@@ -1,9 +1,8 @@
 #ifndef friction_multigrid_coarsest_solver_h
 #define friction_multigrid_coarsest_solver_h
 
+#include <common/multigrid/level_hierarchy.h>
 #include <common/multigrid/level_matrices.h>
-
-#include <deal.II/dofs/dof_handler.h>
 
 #include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/lac/solver_control.h>
@@ -26,24 +25,30 @@ namespace Friction
   class CoarsestSolver
   {
   public:
-    /** @p level_matrices is kept by reference; it must have a level 0. */
-    CoarsestSolver(const DoFHandler<dim>    &dof_handler,
-                   const LevelMatrices<dim> &level_matrices);
+    /** The arguments are kept by reference. Collective. */
+    CoarsestSolver(const LevelHierarchy<dim> &hierarchy,
+                   const LevelMatrices<dim>  &level_matrices);
 
-    /** c = B_0^{-1} r, with zero in all directions that cannot move. */
-    void solve(VectorType &c, const VectorType &r);
+    /** c = B_0^{-1} r at the nodes that the process owns, with zero in all
+     * directions that cannot move. Collective. */
+    void solve(double *c, const double *r);
 
   private:
+    const LevelHierarchy<dim>                      &hierarchy;
     const LevelMatrices<dim>                       &level_matrices;
     TrilinosWrappers::SparseMatrix                  matrix;
     SolverControl                                   control;
     std::unique_ptr<TrilinosWrappers::SolverDirect> solver;
-    VectorType                                      rhs;
+    VectorType                                      rhs, solution;
     unsigned int                                    version = 0;
 
     void factorize();
 
     void project(VectorType &v) const;
+
+    // The number of a component of a node among all unknowns.
+    types::global_dof_index dof(const unsigned int node,
+                                const unsigned int component) const;
   };
 } // namespace Friction
 

@@ -1,9 +1,60 @@
+#include <common/compatibility.h>
 #include <common/multigrid/leaf_matrix.h>
+
+#include <deal.II/dofs/dof_tools.h>
+
+#include <deal.II/lac/sparsity_tools.h>
 
 #include <algorithm>
 
 namespace Friction
 {
+  template <int dim>
+  void
+  make_stiffness_pattern(const DoFHandler<dim>           &dof_handler,
+                         const AffineConstraints<double> &hanging,
+                         DynamicSparsityPattern          &pattern)
+  {
+    const IndexSet relevant =
+      DoFTools::extract_locally_relevant_dofs(dof_handler);
+    pattern.reinit(dof_handler.n_dofs(), dof_handler.n_dofs(), relevant);
+    DoFTools::make_sparsity_pattern(dof_handler,
+                                    pattern,
+                                    hanging,
+                                    /*keep constrained dofs =*/false);
+    SparsityTools::distribute_sparsity_pattern(
+      pattern,
+      dof_handler.locally_owned_dofs(),
+      Compatibility::mpi_communicator(dof_handler),
+      relevant);
+  }
+
+
+
+  template <int dim>
+  IndexSet
+  coupled_dofs(const DoFHandler<dim>        &dof_handler,
+               const DynamicSparsityPattern &pattern)
+  {
+    const IndexSet &owned = dof_handler.locally_owned_dofs();
+    std::vector<types::global_dof_index> others;
+    for (const auto row : owned)
+      for (auto entry = pattern.begin(row); entry != pattern.end(row); ++entry)
+        if (!owned.is_element(entry->column()))
+          others.push_back(entry->column());
+    std::sort(others.begin(), others.end());
+    others.erase(std::unique(others.begin(), others.end()), others.end());
+
+    // All components of a node, or none.
+    IndexSet coupled(owned.size());
+    for (const auto dof : others)
+      coupled.add_range(dof - dof % dim, dof - dof % dim + dim);
+    coupled.compress();
+    return coupled;
+  }
+
+
+
   template <int dim>
   NodeBlockMatrix<dim>
   make_node_block_matrix(const TrilinosWrappers::SparseMatrix &matrix,
@@ -13,9 +64,9 @@ namespace Friction
     const auto        &partitioner = *constraints.partitioner();
     const unsigned int n_rows      = constraints.n_owned_nodes();
 
-    std::vector<std::size_t>  starts = {0};
-    std::vector<unsigned int> columns, row;
-    starts.reserve(n_rows + 1);
+    auto                      blocks = std::make_shared<NodePattern>();
+    std::vector<unsigned int> row;
+    blocks->starts.reserve(n_rows + 1);
     for (unsigned int i = 0; i < n_rows; ++i)
       {
         row.clear();
@@ -27,19 +78,18 @@ namespace Friction
                  ++entry)
               {
                 const unsigned int j = constraints.node_of_dof(entry->column());
-                if (j != i && !constraints.is_hanging(j))
+                if (!constraints.is_hanging(j))
                   row.push_back(j);
               }
+            row.push_back(i);
             std::sort(row.begin(), row.end());
             row.erase(std::unique(row.begin(), row.end()), row.end());
-            columns.push_back(i);
-            columns.insert(columns.end(), row.begin(), row.end());
           }
-        starts.push_back(columns.size());
+        blocks->append_row(row);
       }
-    columns.shrink_to_fit();
+    blocks->columns.shrink_to_fit();
 
-    NodeBlockMatrix<dim> result(std::move(starts), std::move(columns));
+    NodeBlockMatrix<dim> result(std::move(blocks));
     for (unsigned int i = 0; i < n_rows; ++i)
       for (std::size_t e = result.row_begin(i); e < result.row_end(i); ++e)
         for (unsigned int c = 0; c < dim; ++c)
@@ -52,6 +102,16 @@ namespace Friction
 
 
 
+  template void     make_stiffness_pattern(const DoFHandler<2> &,
+                                           const AffineConstraints<double> &,
+                                           DynamicSparsityPattern &);
+  template void     make_stiffness_pattern(const DoFHandler<3> &,
+                                           const AffineConstraints<double> &,
+                                           DynamicSparsityPattern &);
+  template IndexSet coupled_dofs(const DoFHandler<2> &,
+                                 const DynamicSparsityPattern &);
+  template IndexSet coupled_dofs(const DoFHandler<3> &,
+                                 const DynamicSparsityPattern &);
   template NodeBlockMatrix<2>
   make_node_block_matrix(const TrilinosWrappers::SparseMatrix &,
                          const DynamicSparsityPattern &,

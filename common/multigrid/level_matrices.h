@@ -5,6 +5,7 @@
 #include <common/multigrid/node_block_matrix.h>
 #include <common/multigrid/truncation.h>
 
+#include <map>
 #include <vector>
 
 namespace Friction
@@ -28,6 +29,10 @@ namespace Friction
    * them are computed anew, by the same code and hence to the same values as a
    * fresh assembly: O(contact nodes) work, as in section 4.5 of the thesis.
    *
+   * With several processes each has the rows of the nodes that it owns. What it
+   * contributes to rows of others, because their children or leaf nodes are
+   * its own, it sends to their owners, in a fresh assembly and in an update.
+   *
    * Level matrices exist for the correction levels 0,...,n_levels-2; if there
    * is but one level, for that one, which is then the leaf mesh itself.
    */
@@ -36,13 +41,16 @@ namespace Friction
   {
   public:
     /** Assembles for the truncation that only prescribed components cause. The
-     * arguments are kept by reference. */
+     * arguments are kept by reference. Collective. */
     LevelMatrices(const NodeBlockMatrix<dim>  &leaf_matrix,
                   const LevelHierarchy<dim>   &hierarchy,
                   const NodalConstraints<dim> &constraints);
 
-    /** Brings all levels up to date with @p truncation. Returns the number of
-     * block rows that had to be computed. */
+    LevelMatrices(const LevelMatrices &) = delete;
+
+    /** Brings all levels up to date with @p truncation, which must be right at
+     * ghost nodes, too. Returns the number of block rows that this process had
+     * to compute. Collective. */
     std::size_t update(const Truncation<dim> &truncation);
 
     /** The truncation that the matrices are up to date with. */
@@ -64,13 +72,19 @@ namespace Friction
       return matrices[level];
     }
 
-    /** Pseudo-inverses of the diagonal blocks; prescribed components and
-     * directions in which a function has vanished are zero. */
+    /** Pseudo-inverses of the diagonal blocks, with what relaxation needs at
+     * interfaces to other processes, see interface_damping(); prescribed
+     * components and directions in which a function has vanished are zero. */
     const std::vector<NodeBlock<dim>> &
     inverse_diagonals(const unsigned int level) const
     {
       return inverses[level];
     }
+
+    /** The diagonal block of an owned row with the whole interface_majorant(),
+     * for problems that are not solved exactly. */
+    NodeBlock<dim> majorized_diagonal(const unsigned int level,
+                                      const unsigned int row) const;
 
     /** At the nodes of the coarsest level: the projector onto the directions
      * in which nothing can or may move. */
@@ -102,6 +116,21 @@ namespace Friction
     std::vector<NodeBlock<dim>>              null_spaces;
     unsigned int                             version = 0;
 
+    // Per level: parts of rows that others own, parts that others have computed
+    // of ours, and where in our rows they go.
+    struct IncomingPart
+    {
+      std::vector<std::size_t> positions;
+      std::vector<double>      values;
+    };
+    std::vector<NodeBlockMatrix<dim>>                              outgoing;
+    std::vector<std::map<unsigned int, std::vector<IncomingPart>>> incoming;
+    std::vector<std::vector<std::vector<const IncomingPart *>>>    parts_of_row;
+    std::vector<std::vector<unsigned int>> outgoing_row_of;
+
+    // Which leaf rows couple to a ghost of the leaf mesh.
+    std::vector<std::vector<unsigned int>> leaf_rows_of_ghost;
+
     std::vector<std::vector<unsigned int>> position_of_column;
 
     // Of the row that is being computed: its sums by columns of the finer
@@ -109,22 +138,22 @@ namespace Friction
     std::vector<unsigned int>   slot_of_finer_column, finer_columns;
     std::vector<NodeBlock<dim>> finer_sums;
 
-    void make_pattern(const unsigned int level);
+    void prepare_exchange(const unsigned int level);
 
+    // A row of this process, or its part of somebody else's.
     void compute_row(const unsigned int level, const unsigned int row);
+
+    // Sends parts of rows of others, and receives parts of ours; returns which
+    // of ours.
+    std::vector<unsigned int>
+    exchange_parts(const unsigned int               level,
+                   const std::vector<unsigned int> &changed_rows);
 
     void compute_inverse(const unsigned int level, const unsigned int row);
 
-    const NodeWeights &finer_parents(const unsigned int level) const;
-
-    // Calls own_block(column, i, j, position) for the blocks (i,j) of the leaf
-    // matrix that belong to a row of this level, and finer_block(weight,
-    // column, block) for those that come from the next finer level.
-    template <typename OwnBlock, typename FinerBlock>
-    void for_each_contribution(const unsigned int level,
-                               const unsigned int row,
-                               const OwnBlock    &own_block,
-                               const FinerBlock  &finer_block) const;
+    NodeBlock<dim> free_diagonal(const unsigned int    level,
+                                 const unsigned int    row,
+                                 const NodeBlock<dim> &addition) const;
   };
 } // namespace Friction
 

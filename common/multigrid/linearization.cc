@@ -83,7 +83,71 @@ namespace Friction
     , friction_coefficient(friction_coefficient)
     , variant(variant)
     , current(constraints)
-  {}
+  {
+    find_ghosts(constraints);
+  }
+
+
+
+  template <int dim>
+  void
+  Linearization<dim>::find_ghosts(const NodalConstraints<dim> &constraints)
+  {
+    const NodeNumbering &leaf = constraints.numbering();
+    if (leaf.distribution().n_processes() == 1)
+      return;
+
+    // Contact nodes have numbers of their own. Which of our ghosts is which of
+    // them their owners tell; zero means that it is none.
+    NodeNumbering numbering(
+      NodeDistribution(contact.size(), constraints.communicator()));
+    std::vector<double> number(leaf.size(), 0.);
+    for (unsigned int p = 0; p < contact.size(); ++p)
+      number[contact[p].node] = 1. + numbering.distribution().global(p);
+    std::vector<unsigned int> ghosts;
+    for (unsigned int node = leaf.n_owned(); node < leaf.size(); ++node)
+      ghosts.push_back(node);
+    GhostExchange(leaf, ghosts).update(number.data(), 1);
+
+    std::vector<unsigned int> contact_ghosts;
+    for (const unsigned int node : ghosts)
+      if (number[node] > 0)
+        {
+          ghost_nodes.push_back(node);
+          contact_ghosts.push_back(
+            numbering.add(static_cast<GlobalNode>(number[node]) - 1));
+        }
+    exchange = GhostExchange(numbering, contact_ghosts);
+    exchanged.resize(2 * dim * dim * numbering.size());
+  }
+
+
+
+  template <int dim>
+  void
+  Linearization<dim>::exchange_decisions()
+  {
+    if (exchange.is_empty())
+      return;
+    constexpr unsigned int n = dim * dim;
+    for (unsigned int p = 0; p < contact.size(); ++p)
+      {
+        std::copy_n(
+          current.projector(contact[p].node).begin(), n, &exchanged[2 * n * p]);
+        std::copy_n(current.curvature(contact[p].node).begin(),
+                    n,
+                    &exchanged[2 * n * p + n]);
+      }
+    exchange.update(exchanged.data(), 2 * n);
+    for (unsigned int g = 0; g < ghost_nodes.size(); ++g)
+      {
+        NodeBlock<dim> projector, curvature;
+        const double  *values = &exchanged[2 * n * (contact.size() + g)];
+        std::copy_n(values, n, projector.begin());
+        std::copy_n(values + n, n, curvature.begin());
+        current.set(ghost_nodes[g], projector, curvature);
+      }
+  }
 
 
 
@@ -133,6 +197,7 @@ namespace Friction
           }
         current.set(node.node, projector, curvature);
       }
+    exchange_decisions();
   }
 
 

@@ -5,6 +5,7 @@
 #include <common/contact/contact_state.h>
 #include <common/multigrid/node_block_matrix.h>
 #include <common/multigrid/truncation.h>
+#include <common/parallel/ghost_exchange.h>
 #include <common/scene/solver_settings.h>
 
 namespace Friction
@@ -44,14 +45,15 @@ namespace Friction
   class Linearization
   {
   public:
-    /** @p matrix and @p contact are kept by reference. */
+    /** @p matrix and @p contact are kept by reference. Collective. */
     Linearization(const NodeBlockMatrix<dim>  &matrix,
                   const NodalConstraints<dim> &constraints,
                   const ContactBoundary<dim>  &contact,
                   const double                 friction_coefficient,
                   const TruncationVariant      variant);
 
-    /** Determines the phases and, in three dimensions, $\omega''$. */
+    /** Determines the phases and, in three dimensions, $\omega''$; and has the
+     * neighbouring processes know them. */
     void update(const VectorType &u, const ContactState &state);
 
     const Truncation<dim> &
@@ -84,6 +86,17 @@ namespace Friction
     const double                friction_coefficient;
     const TruncationVariant     variant;
     Truncation<dim>             current;
+
+    // Contact nodes of others that are ghosts here, and the exchange of what
+    // has been decided for them: projector and second derivative of the contact
+    // nodes of this process, and then of those ghosts.
+    std::vector<unsigned int> ghost_nodes;
+    GhostExchange             exchange;
+    std::vector<double>       exchanged;
+
+    void find_ghosts(const NodalConstraints<dim> &constraints);
+
+    void exchange_decisions();
   };
 } // namespace Friction
 

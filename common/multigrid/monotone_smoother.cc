@@ -1,3 +1,4 @@
+#include <common/multigrid/interface_damping.h>
 #include <common/multigrid/monotone_smoother.h>
 
 #include <algorithm>
@@ -25,8 +26,14 @@ namespace Friction
       {
         is_ordinary[p.node] = false;
 
+        NodeBlock<dim>       A       = zero_block<dim>();
+        const NodeBlock<dim> damping = interface_damping(matrix, p.node);
+        for (unsigned int e = 0; e < dim * dim; ++e)
+          A[e] = matrix.block(matrix.row_begin(p.node))[e] + damping[e];
+        if (damping != zero_block<dim>())
+          damped_diagonals[p.node] = A;
+
         // The diagonal block in the frame of the node.
-        const double *A = matrix.block(matrix.row_begin(p.node));
         std::array<double, dim * dim> block;
         for (unsigned int c = 0; c < dim; ++c)
           for (unsigned int r = 0; r < dim; ++r)
@@ -49,6 +56,9 @@ namespace Friction
           NodeBlock<dim> block;
           std::copy_n(
             matrix.block(matrix.row_begin(node)), dim * dim, block.begin());
+          const NodeBlock<dim> damping = interface_damping(matrix, node);
+          for (unsigned int e = 0; e < dim * dim; ++e)
+            block[e] += damping[e];
           for (unsigned int c = 0; c < dim; ++c)
             for (unsigned int r = 0; r < dim; ++r)
               if (constraints.is_prescribed(node, c) ||
@@ -57,6 +67,17 @@ namespace Friction
           inverses[node] =
             pseudo_inverse<dim>(block, 1e-10 * trace<dim>(block.data()));
         }
+
+    std::vector<unsigned int> coupled;
+    std::vector<char>         is_coupled(constraints.n_nodes(), 0);
+    for (unsigned int i = 0; i < matrix.n_rows(); ++i)
+      for (std::size_t e = matrix.row_begin(i); e < matrix.row_end(i); ++e)
+        is_coupled[matrix.column(e)] = 1;
+    for (unsigned int i = matrix.n_rows(); i < is_coupled.size(); ++i)
+      if (is_coupled[i])
+        coupled.push_back(i);
+    exchange =
+      std::make_unique<GhostExchange>(constraints.numbering(), coupled);
 
     schedule = SweepSchedule<dim>(matrix, ordinary);
     first_contact.assign(schedule.n_chunks() + 1, 0);
@@ -106,28 +127,32 @@ namespace Friction
         }
     };
 
-    schedule.run(what.n + (residual != nullptr ? 1 : 0),
-                 what.backwards,
-                 [&](const unsigned int stage, const unsigned int chunk) {
-                   const bool update = what.update_normal_forces &&
-                     (stage > 0 || !what.trust_first_normal_forces);
-                   if (stage == what.n)
-                     matrix.residual(residual->begin(),
-                                     f.begin(),
-                                     u.begin(),
-                                     schedule.chunk(chunk).first,
-                                     schedule.chunk(chunk).second);
-                   else if (what.backwards)
-                     {
-                       relax_contact_nodes(chunk, update);
-                       relax_ordinary_nodes(chunk);
-                     }
-                   else
-                     {
-                       relax_ordinary_nodes(chunk);
-                       relax_contact_nodes(chunk, update);
-                     }
-                 });
+    schedule.run(
+      what.n,
+      residual != nullptr,
+      what.backwards,
+      [&](const unsigned int stage, const unsigned int chunk) {
+        const bool update = what.update_normal_forces &&
+          (stage > 0 || !what.trust_first_normal_forces);
+        if (stage == what.n)
+          matrix.residual(residual->begin(),
+                          f.begin(),
+                          u.begin(),
+                          schedule.chunk(chunk).first,
+                          schedule.chunk(chunk).second);
+        else if (what.backwards)
+          {
+            relax_contact_nodes(chunk, update);
+            relax_ordinary_nodes(chunk);
+          }
+        else
+          {
+            relax_ordinary_nodes(chunk);
+            relax_contact_nodes(chunk, update);
+          }
+      },
+      *exchange,
+      u.begin());
   }
 
 
@@ -144,10 +169,15 @@ namespace Friction
     const ContactNode<dim> &node  = contact[p];
     double                 *value = u.begin() + dim * node.node;
 
-    // The force that the other nodes leave, r~ = r + A_pp u_p in (6.18).
+    // The force that the other nodes leave, r~ = r + A_pp u_p in (6.18); at an
+    // interface to other processes with the damping in A_pp.
     const NodeValue<dim> product = matrix.row_times(node.node, u.begin());
+    const auto           damped  = damped_diagonals.find(node.node);
     const NodeValue<dim> diagonal =
-      times<dim>(matrix.block(matrix.row_begin(node.node)), value);
+      times<dim>(damped == damped_diagonals.end()
+                   ? matrix.block(matrix.row_begin(node.node))
+                   : damped->second.data(),
+                 value);
     Tensor<1, dim> residual, force, old_value;
     for (unsigned int d = 0; d < dim; ++d)
       {

@@ -6,8 +6,11 @@
 #include <common/contact/local_problem.h>
 #include <common/contact/nodal_constraints.h>
 #include <common/multigrid/sweep_schedule.h>
+#include <common/parallel/ghost_exchange.h>
 #include <common/scene/solver_settings.h>
 
+#include <map>
+#include <memory>
 #include <vector>
 
 namespace Friction
@@ -26,13 +29,18 @@ namespace Friction
    * come first and the contact nodes last, so that the long loop over the
    * ordinary ones needs no test; a backward sweep is the exact reverse. Several
    * sweeps follow each other through the cache, see SweepSchedule.
+   *
+   * With several processes each relaxes its own nodes, against the ghost values
+   * of the sweep before. Where a node couples to nodes of others, its diagonal
+   * block may have to be enlarged, see interface_damping(), in the local
+   * problems as well; the energy still cannot increase.
    */
   template <int dim>
   class MonotoneSmoother
   {
   public:
     /**
-     * Arguments given by reference are kept.
+     * Collective. Arguments given by reference are kept.
      * @param friction_coefficient  zero for frictionless contact, for which
      *        nothing of friction is then computed.
      * @param local_solver  of the local problems, in three dimensions.
@@ -62,7 +70,8 @@ namespace Friction
     /**
      * Sweeps over all nodes that can move.
      * @param u      displacement at the leaf nodes; prescribed components must
-     *               have their values, which are not changed.
+     *               have their values, which are not changed. Its ghosts must
+     * be valid (see ghosts()), and are on return.
      * @param f      nodal forces.
      * @param state  contact and stick flags, set by the sweeps, and the normal
      *               forces in the friction bounds.
@@ -88,6 +97,14 @@ namespace Friction
       sweeps(u, f, state, what);
     }
 
+    /** Keeps those ghosts of a vector up to date that the rows of the matrix
+     * couple to. */
+    GhostExchange &
+    ghosts() const
+    {
+      return *exchange;
+    }
+
     std::size_t
     memory_consumption() const
     {
@@ -101,6 +118,12 @@ namespace Friction
     std::vector<NodeBlock<dim>>    inverses;
     std::vector<LocalProblem<dim>> local_problems;
     SweepSchedule<dim>             schedule;
+
+    // Diagonal blocks of contact nodes where they had to be enlarged.
+    std::map<unsigned int, NodeBlock<dim>> damped_diagonals;
+
+    // Has buffers, which makes it change while it works.
+    std::unique_ptr<GhostExchange> exchange;
 
     // Contact nodes by chunk: those of chunk c are first_contact[c],... in the
     // permutation by_chunk.

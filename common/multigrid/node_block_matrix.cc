@@ -5,12 +5,28 @@
 
 namespace Friction
 {
+  void
+  NodePattern::append_row(std::vector<unsigned int> &row_columns)
+  {
+    const unsigned int row = n_rows();
+    std::sort(row_columns.begin(), row_columns.end());
+    const auto diagonal =
+      std::find(row_columns.begin(), row_columns.end(), row);
+    if (diagonal != row_columns.end())
+      std::rotate(row_columns.begin(), diagonal, diagonal + 1);
+    columns.insert(columns.end(), row_columns.begin(), row_columns.end());
+    starts.push_back(columns.size());
+  }
+
+
+
   template <int dim>
-  NodeBlockMatrix<dim>::NodeBlockMatrix(std::vector<std::size_t>  row_starts,
-                                        std::vector<unsigned int> columns)
-    : row_starts(std::move(row_starts))
-    , columns(std::move(columns))
-    , values(this->columns.size() * (dim * dim), 0.)
+  NodeBlockMatrix<dim>::NodeBlockMatrix(
+    std::shared_ptr<const NodePattern> pattern)
+    : pattern(std::move(pattern))
+    , row_starts(this->pattern->starts.data())
+    , columns(this->pattern->columns.data())
+    , values(this->pattern->columns.size() * (dim * dim), 0.)
   {}
 
 
@@ -23,9 +39,9 @@ namespace Friction
     const std::size_t begin = row_starts[row], end = row_starts[row + 1];
     if (begin == end || columns[begin] == column)
       return begin;
-    const auto last = columns.begin() + end;
-    const auto it = std::lower_bound(columns.begin() + begin + 1, last, column);
-    return (it != last && *it == column) ? it - columns.begin() : end;
+    const auto last = columns + end;
+    const auto it   = std::lower_bound(columns + begin + 1, last, column);
+    return (it != last && *it == column) ? it - columns : end;
   }
 
 
@@ -77,8 +93,7 @@ namespace Friction
   std::size_t
   NodeBlockMatrix<dim>::memory_consumption() const
   {
-    return row_starts.capacity() * sizeof(std::size_t) +
-      columns.capacity() * sizeof(unsigned int) +
+    return (pattern == nullptr ? 0 : pattern->memory_consumption()) +
       values.capacity() * sizeof(double);
   }
 

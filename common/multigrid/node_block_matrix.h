@@ -4,11 +4,40 @@
 #include <common/multigrid/node_block.h>
 
 #include <cstddef>
+#include <memory>
 #include <utility>
 #include <vector>
 
 namespace Friction
 {
+  /**
+   * Which blocks a matrix has, in compressed row storage: the columns of each
+   * row, the diagonal first and the others ascending.
+   */
+  struct NodePattern
+  {
+    std::vector<std::size_t>  starts = {0}; ///< n_rows + 1 of them
+    std::vector<unsigned int> columns;
+
+    unsigned int
+    n_rows() const
+    {
+      return starts.size() - 1;
+    }
+
+    /** Takes @p row_columns, which it sorts, as the columns of the next row. */
+    void append_row(std::vector<unsigned int> &row_columns);
+
+    std::size_t
+    memory_consumption() const
+    {
+      return starts.capacity() * sizeof(std::size_t) +
+        columns.capacity() * sizeof(unsigned int);
+    }
+  };
+
+
+
   /**
    * A sparse matrix of dense dim x dim blocks, one row of blocks per node.
    *
@@ -29,24 +58,19 @@ namespace Friction
   public:
     NodeBlockMatrix() = default;
 
-    /**
-     * A zero matrix with given pattern, in compressed row storage.
-     * @param row_starts  n_rows + 1 positions in @p columns.
-     * @param columns     column numbers of the blocks, the diagonal first.
-     */
-    NodeBlockMatrix(std::vector<std::size_t>  row_starts,
-                    std::vector<unsigned int> columns);
+    /** A zero matrix with given pattern, which several matrices may share. */
+    explicit NodeBlockMatrix(std::shared_ptr<const NodePattern> pattern);
 
     unsigned int
     n_rows() const
     {
-      return row_starts.empty() ? 0 : row_starts.size() - 1;
+      return pattern == nullptr ? 0 : pattern->n_rows();
     }
 
     std::size_t
     n_blocks() const
     {
-      return columns.size();
+      return pattern == nullptr ? 0 : pattern->columns.size();
     }
 
     /** The position of the first block of a row, which is the diagonal one. */
@@ -97,7 +121,7 @@ namespace Friction
         reinterpret_cast<const char *>(block(row_starts[row + 1]));
       for (; begin < end; begin += 64)
         __builtin_prefetch(begin);
-      __builtin_prefetch(columns.data() + row_starts[row]);
+      __builtin_prefetch(columns + row_starts[row]);
     }
 
     /** y = A x. */
@@ -117,9 +141,10 @@ namespace Friction
     std::size_t memory_consumption() const;
 
   private:
-    std::vector<std::size_t>  row_starts;
-    std::vector<unsigned int> columns;
-    std::vector<double>       values;
+    std::shared_ptr<const NodePattern> pattern;
+    const std::size_t                 *row_starts = nullptr;
+    const unsigned int                *columns    = nullptr;
+    std::vector<double>                values;
   };
 
 
@@ -168,7 +193,7 @@ namespace Friction
   {
     const std::size_t   end = row_starts[row + 1];
     const double       *a   = values.data() + row_starts[row] * (dim * dim);
-    const unsigned int *c   = columns.data();
+    const unsigned int *c   = columns;
     NodeValue<dim>      y;
     typedef double      Pair __attribute__((vector_size(16), aligned(8)));
     if constexpr (dim == 2)

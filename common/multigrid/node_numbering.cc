@@ -14,9 +14,9 @@ namespace Friction
 
 
 
-    // Appends the nodes that can be reached from a start node, level by level.
+    // Appends the nodes that can be reached from start nodes, level by level.
     void
-    breadth_first_search(const unsigned int               start,
+    breadth_first_search(const std::vector<unsigned int> &start,
                          const CellNodes                 &cell_nodes,
                          const unsigned int               nodes_per_cell,
                          const std::vector<unsigned int> &cells_start,
@@ -25,8 +25,11 @@ namespace Friction
                          std::vector<unsigned int>       &order)
     {
       std::size_t next = order.size();
-      order.push_back(start);
-      visited[start] = 1;
+      for (const unsigned int node : start)
+        {
+          order.push_back(node);
+          visited[node] = 1;
+        }
       for (; next < order.size(); ++next)
         for (unsigned int c = cells_start[order[next]];
              c < cells_start[order[next] + 1];
@@ -45,10 +48,13 @@ namespace Friction
 
 
 
+    // From the start nodes, if there are any; all that cannot be reached from
+    // there gets a start at its rim.
     std::vector<unsigned int>
-    cuthill_mckee(const unsigned int n_nodes,
-                  const CellNodes   &cell_nodes,
-                  const unsigned int nodes_per_cell)
+    cuthill_mckee(const unsigned int               n_nodes,
+                  const CellNodes                 &cell_nodes,
+                  const unsigned int               nodes_per_cell,
+                  const std::vector<unsigned int> &start_nodes)
     {
       // The cells around each node.
       std::vector<unsigned int> cells_start(n_nodes + 1, 0);
@@ -65,12 +71,19 @@ namespace Friction
       std::vector<unsigned int> order;
       std::vector<char>         visited(n_nodes, 0);
       order.reserve(n_nodes);
+      breadth_first_search(start_nodes,
+                           cell_nodes,
+                           nodes_per_cell,
+                           cells_start,
+                           cells,
+                           visited,
+                           order);
       for (unsigned int i = 0; i < n_nodes; ++i)
         if (!visited[i])
           {
             // The node farthest from any node lies at the rim; start there.
             const std::size_t begin = order.size();
-            breadth_first_search(i,
+            breadth_first_search({i},
                                  cell_nodes,
                                  nodes_per_cell,
                                  cells_start,
@@ -81,7 +94,7 @@ namespace Friction
             for (std::size_t k = begin; k < order.size(); ++k)
               visited[order[k]] = 0;
             order.resize(begin);
-            breadth_first_search(far,
+            breadth_first_search({far},
                                  cell_nodes,
                                  nodes_per_cell,
                                  cells_start,
@@ -102,26 +115,41 @@ namespace Friction
                 const std::vector<types::global_dof_index> &vertex_dofs)
     {
       // Cells that are partly somebody else's repeat their first owned node in
-      // place of the others.
+      // place of the others. Their owned nodes are those at an interface to
+      // other processes, and come first.
       const unsigned int nodes_per_cell = 1u << dim;
+      const unsigned int n_nodes        = owned.n_elements() / dim;
       CellNodes          kept;
+      std::vector<char>  at_interface(n_nodes, 0);
       for (std::size_t c = 0; c < vertex_dofs.size(); c += nodes_per_cell)
         {
           unsigned int some_owned = numbers::invalid_unsigned_int;
+          unsigned int n_owned    = 0;
           for (unsigned int v = 0; v < nodes_per_cell; ++v)
             if (owned.is_element(vertex_dofs[c + v]))
-              some_owned = owned.index_within_set(vertex_dofs[c + v]) / dim;
-          if (some_owned == numbers::invalid_unsigned_int)
+              {
+                some_owned = owned.index_within_set(vertex_dofs[c + v]) / dim;
+                ++n_owned;
+              }
+          if (n_owned == 0)
             continue;
           for (unsigned int v = 0; v < nodes_per_cell; ++v)
-            kept.push_back(owned.is_element(vertex_dofs[c + v])
-                             ? owned.index_within_set(vertex_dofs[c + v]) / dim
-                             : some_owned);
+            {
+              kept.push_back(owned.is_element(vertex_dofs[c + v])
+                               ? owned.index_within_set(vertex_dofs[c + v]) /
+                                 dim
+                               : some_owned);
+              if (n_owned < nodes_per_cell)
+                at_interface[kept.back()] = 1;
+            }
         }
 
-      const unsigned int              n_nodes = owned.n_elements() / dim;
+      std::vector<unsigned int> interface;
+      for (unsigned int i = 0; i < n_nodes; ++i)
+        if (at_interface[i])
+          interface.push_back(i);
       const std::vector<unsigned int> order =
-        cuthill_mckee(n_nodes, kept, nodes_per_cell);
+        cuthill_mckee(n_nodes, kept, nodes_per_cell, interface);
       std::vector<types::global_dof_index> numbers(owned.n_elements());
       for (unsigned int i = 0; i < n_nodes; ++i)
         for (unsigned int d = 0; d < dim; ++d)

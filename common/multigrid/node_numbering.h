@@ -15,7 +15,9 @@ namespace Friction
    * follow another through the cache; see SweepSchedule.
    *
    * To be called after distribute_dofs() and distribute_mg_dofs(). Each process
-   * renumbers the nodes it owns.
+   * renumbers the nodes it owns. Where it has neighbours, the search starts
+   * from all nodes at the interfaces to them: a sweep then relaxes these first,
+   * and their new values can travel while it is busy with the rest.
    */
   template <int dim>
   void renumber_nodes(DoFHandler<dim> &dof_handler);

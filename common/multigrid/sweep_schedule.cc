@@ -23,6 +23,7 @@ namespace Friction
           begin = end;
         }
 
+    at_interface.assign(n_chunks(), 0);
     reach_up.resize(n_chunks());
     reach_down.resize(n_chunks());
     for (unsigned int c = 0; c < n_chunks(); ++c)
@@ -31,12 +32,13 @@ namespace Friction
         for (std::size_t e = matrix.row_begin(chunk_starts[c]);
              e < matrix.row_begin(chunk_starts[c + 1]);
              ++e)
-          // Ghost nodes do not change during sweeps.
           if (matrix.column(e) < n_nodes)
             {
               first = std::min(first, matrix.column(e));
               last  = std::max(last, matrix.column(e));
             }
+          else
+            at_interface[c] = 1;
         reach_down[c] = chunk_of(first);
         reach_up[c]   = chunk_of(last);
       }
@@ -59,10 +61,12 @@ namespace Friction
                       double                            *x,
                       const bool                         backwards,
                       const unsigned int                 n_sweeps,
+                      GhostExchange                     &ghosts,
                       double                            *residual)
   {
     schedule.run(
-      n_sweeps + (residual != nullptr ? 1 : 0),
+      n_sweeps,
+      residual != nullptr,
       backwards,
       [&](const unsigned int stage, const unsigned int c) {
         if (stage == n_sweeps)
@@ -79,7 +83,9 @@ namespace Friction
                                x,
                                backwards);
           }
-      });
+      },
+      ghosts,
+      x);
   }
 
 
@@ -94,6 +100,7 @@ namespace Friction
                                     double *,
                                     const bool,
                                     const unsigned int,
+                                    GhostExchange &,
                                     double *);
   template void gauss_seidel_sweeps(const SweepSchedule<3> &,
                                     const NodeBlockMatrix<3> &,
@@ -102,5 +109,6 @@ namespace Friction
                                     double *,
                                     const bool,
                                     const unsigned int,
+                                    GhostExchange &,
                                     double *);
 } // namespace Friction

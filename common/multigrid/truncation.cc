@@ -97,7 +97,8 @@ namespace Friction
   {
     unsigned int sum = 0;
     for (const unsigned int node : specials)
-      sum += dim - std::lround(trace<dim>(projectors[slot[node]].data()));
+      if (node < n_owned)
+        sum += dim - std::lround(trace<dim>(projectors[slot[node]].data()));
     return sum;
   }
 

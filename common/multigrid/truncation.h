@@ -67,14 +67,16 @@ namespace Friction
     /** Both subspace and second derivative of a node agree with another's. */
     bool agrees(const Truncation &other, const unsigned int node) const;
 
-    /** The nodes that were ever given a subspace other than everything. */
+    /** The nodes, ghosts included, that were ever given a subspace other than
+     * everything. */
     const std::vector<unsigned int> &
     special_nodes() const
     {
       return specials;
     }
 
-    /** The number of displacement components that are held at contact nodes. */
+    /** The number of displacement components that are held at contact nodes of
+     * this process. */
     unsigned int n_truncated_components() const;
 
   private:

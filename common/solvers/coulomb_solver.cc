@@ -1,6 +1,8 @@
+#include <common/parallel/reductions.h>
 #include <common/solvers/coulomb_solver.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace Friction
@@ -20,7 +22,7 @@ namespace Friction
             largest,
             trace<dim>(problem.matrix.block(problem.matrix.row_begin(i))) *
               std::sqrt(dot<dim>(u.begin() + dim * i, u.begin() + dim * i)));
-      return 1e-8 * largest;
+      return 1e-8 * max_over_processes(largest, problem.communicator());
     }
   } // namespace
 
@@ -50,13 +52,12 @@ namespace Friction
 
 
   template <int dim>
-  CoulombSolver<dim>::CoulombSolver(const DoFHandler<dim>      &dof_handler,
-                                    const LevelHierarchy<dim>  &hierarchy,
+  CoulombSolver<dim>::CoulombSolver(const LevelHierarchy<dim>  &hierarchy,
                                     const DiscreteProblem<dim> &problem,
                                     const SolverSettings       &settings)
     : problem(problem)
     , settings(settings)
-    , iteration(dof_handler, hierarchy, problem, settings)
+    , iteration(hierarchy, problem, settings)
   {}
 
 
@@ -136,8 +137,10 @@ namespace Friction
             change += (found - given[p]) * (found - given[p]);
             norm += found * found;
           }
-        report.outer_changes.push_back(norm > 0 ? std::sqrt(change / norm)
-                                                : std::sqrt(change));
+        const auto sums = sum_over_processes(
+          std::array<double, 2>{{change, norm}}, problem.communicator());
+        report.outer_changes.push_back(
+          sums[1] > 0 ? std::sqrt(sums[0] / sums[1]) : std::sqrt(sums[0]));
         if (report.outer_changes.back() <= settings.outer_tolerance)
           {
             report.converged = true;

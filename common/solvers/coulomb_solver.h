@@ -63,8 +63,7 @@ namespace Friction
     using Progress = typename MonotoneMultigrid<dim>::Progress;
 
     /** As for MonotoneMultigrid. */
-    CoulombSolver(const DoFHandler<dim>      &dof_handler,
-                  const LevelHierarchy<dim>  &hierarchy,
+    CoulombSolver(const LevelHierarchy<dim>  &hierarchy,
                   const DiscreteProblem<dim> &problem,
                   const SolverSettings       &settings);
 

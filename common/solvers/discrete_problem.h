@@ -31,6 +31,12 @@ namespace Friction
     /// normal force of the state, with that of Coulomb F times the one found.
     double friction_coefficient;
 
+    MPI_Comm
+    communicator() const
+    {
+      return constraints.communicator();
+    }
+
     /// Without a coefficient there is no friction, whatever the law is called.
     bool
     has_friction() const

@@ -1,6 +1,9 @@
+#include <common/parallel/communication_count.h>
+#include <common/parallel/reductions.h>
 #include <common/solvers/monotone_multigrid.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -8,12 +11,14 @@ namespace Friction
 {
   namespace
   {
-    // Adds the time until its end to a counter.
+    // Adds the time until its end to a counter; what is sent until then counts
+    // for the same part of the work.
     class Stopwatch
     {
     public:
-      explicit Stopwatch(double &seconds)
-        : seconds(seconds)
+      Stopwatch(double &seconds, const SolverPhase phase)
+        : communication(phase)
+        , seconds(seconds)
         , start(std::chrono::steady_clock::now())
       {}
 
@@ -25,6 +30,7 @@ namespace Friction
       }
 
     private:
+      const CommunicationPhase                    communication;
       double                                     &seconds;
       const std::chrono::steady_clock::time_point start;
     };
@@ -45,7 +51,6 @@ namespace Friction
 
   template <int dim>
   MonotoneMultigrid<dim>::MonotoneMultigrid(
-    const DoFHandler<dim>      &dof_handler,
     const LevelHierarchy<dim>  &hierarchy,
     const DiscreteProblem<dim> &problem,
     const SolverSettings       &settings)
@@ -62,8 +67,7 @@ namespace Friction
                     problem.contact,
                     problem.effective_coefficient(),
                     settings.truncation)
-    , coarse(dof_handler,
-             problem.matrix,
+    , coarse(problem.matrix,
              hierarchy,
              problem.constraints,
              settings.cycle,
@@ -84,7 +88,8 @@ namespace Friction
       if (problem.matrix.row_begin(i) < problem.matrix.row_end(i))
         sum += trace<dim>(problem.matrix.block(problem.matrix.row_begin(i))) *
           dot<dim>(u.begin() + dim * i, u.begin() + dim * i);
-    return std::max(1e-12 * sum, 1e-300);
+    return std::max(1e-12 * sum_over_processes(sum, problem.communicator()),
+                    1e-300);
   }
 
 
@@ -125,17 +130,19 @@ namespace Friction
                                 const bool      update_normal_forces,
                                 const Progress &progress)
   {
-    const Stopwatch    stopwatch(costs.total);
+    const Stopwatch    stopwatch(costs.total, SolverPhase::other);
     MultigridResult    result;
     Recombination<dim> recombination(settings.recombined_steps);
     VectorType         residual(u), last_u, last_residual;
     double             floor_of_norm = 0;
     const bool         update = update_normal_forces && problem.has_friction();
+    smoother.ghosts().update(u.begin(), dim);
 
     for (unsigned int cycle = 0;; ++cycle)
       {
         {
-          const Stopwatch sweeps(costs.leading_sweeps);
+          const Stopwatch sweeps(costs.leading_sweeps,
+                                 SolverPhase::leading_sweeps);
 
           // The very first sweep works with the normal forces of the initial
           // guess, which know better than its residual does.
@@ -150,22 +157,33 @@ namespace Friction
           set_normal_forces(state, residual);
 
         // The increment from one smoothed iterate to the next, in the energy
-        // norm: A times it is a difference of residuals.
+        // norm: A times it is a difference of residuals. What has to be summed
+        // over all processes goes together.
+        enum Sum
+        {
+          increment,
+          norm,
+          energy
+        };
+        std::array<double, 3> sums{};
+        for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+          {
+            if (cycle > 0)
+              sums[increment] +=
+                (u.local_element(i) - last_u.local_element(i)) *
+                (last_residual.local_element(i) - residual.local_element(i));
+            sums[norm] += u.local_element(i) *
+              (problem.forces.local_element(i) - residual.local_element(i));
+          }
+        sums[energy] = functional.energy_share(u, residual, state);
+        sums         = sum_over_processes(sums, problem.communicator());
         if (cycle > 0)
           {
             if (cycle == 1)
               floor_of_norm = smallest_norm(u);
-            double increment = 0, norm = 0;
-            for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-              {
-                increment += (u.local_element(i) - last_u.local_element(i)) *
-                  (last_residual.local_element(i) - residual.local_element(i));
-                norm += u.local_element(i) *
-                  (problem.forces.local_element(i) - residual.local_element(i));
-              }
             CycleInfo &info = result.cycles.back();
-            info.increment  = std::sqrt(std::max(0., increment) /
-                                       std::max(norm, floor_of_norm));
+            info.increment  = std::sqrt(std::max(0., sums[increment]) /
+                                       std::max(sums[norm], floor_of_norm));
             if (progress)
               progress(cycle, info.increment);
             if (!std::isfinite(info.increment))
@@ -182,11 +200,12 @@ namespace Friction
         last_residual = residual;
 
         CycleInfo info = {};
-        info.energy    = functional.energy(u, residual, state);
+        info.energy    = sums[energy];
         info.damping   = correct(u, residual, state, recombination, info);
         result.cycles.push_back(info);
 
-        const Stopwatch                        sweeps(costs.leading_sweeps);
+        const Stopwatch                        sweeps(costs.leading_sweeps,
+                               SolverPhase::leading_sweeps);
         typename MonotoneSmoother<dim>::Sweeps what;
         what.n                    = settings.smoothing_steps;
         what.backwards            = true;
@@ -209,68 +228,116 @@ namespace Friction
                                   CycleInfo          &info)
   {
     {
-      const Stopwatch updates(costs.matrix_updates);
+      const Stopwatch updates(costs.matrix_updates,
+                              SolverPhase::matrix_updates);
       linearization.update(u, state);
       costs.n_updated_rows += coarse.update(linearization.truncation());
     }
 
     VectorType r(residual), v(u);
     linearization.linearize_residual(r, u, state);
-    info.residual  = r.l2_norm();
-    info.truncated = linearization.truncation().n_truncated_components();
+    std::array<double, 2> totals{
+      {0., 1. * linearization.truncation().n_truncated_components()}};
+    for (unsigned int i = 0; i < r.locally_owned_size(); ++i)
+      totals[0] += r.local_element(i) * r.local_element(i);
+    totals         = sum_over_processes(totals, problem.communicator());
+    info.residual  = std::sqrt(totals[0]);
+    info.truncated = totals[1];
 
     if (settings.coarse_correction == CoarseCorrection::monotone)
       {
         // Admissible, within the phases, and in two dimensions lowering the
         // energy as it is: no line search. Only rounding is projected away.
-        const Stopwatch work(costs.coarse_correction);
+        const Stopwatch work(costs.coarse_correction, SolverPhase::transfer);
         VectorType      lower(u), upper(u);
         linearization.bounds(lower, upper, u, state);
         coarse.apply_within_bounds(v, r, lower, upper);
         functional.project(v, u);
         u += v;
+        smoother.ghosts().update(u.begin(), dim);
         return 1.;
       }
 
     {
-      const Stopwatch work(costs.coarse_correction);
+      const Stopwatch work(costs.coarse_correction, SolverPhase::transfer);
       coarse.apply(v, r);
     }
 
-    const Stopwatch work(costs.line_search);
+    const Stopwatch work(costs.line_search, SolverPhase::line_search);
     VectorType      Av(u);
-    problem.matrix.vmult(Av.begin(), v.begin());
+    multiply(Av, v);
     recombination.add_iterate(u, residual);
     recombination.improve(v, Av, r, linearization.truncation());
 
     // Where a node would have to reverse its slip, the linearisation knows
     // nothing of what comes. A single such node would hold up all others in the
     // line search; it rather stops, and the relaxation decides how it goes on.
-    if (functional.keep_slip(v, u, state) > 0)
-      problem.matrix.vmult(Av.begin(), v.begin());
-    double curvature = v * Av;
-    if (!(curvature > 0))
+    const unsigned int n_stopped = functional.keep_slip(v, u, state);
+    Products           products  = along(v, Av, residual, n_stopped);
+    if (products.n_changed > 0)
+      {
+        multiply(Av, v);
+        products = along(v, Av, residual, 0);
+      }
+    if (!(products.curvature > 0))
       return 0.;
-    double length = functional.minimize_along(
-      v, u, state, residual * v, curvature, settings.maximum_damping);
+    double length = functional.minimize_along(v,
+                                              u,
+                                              state,
+                                              products.slope,
+                                              products.curvature,
+                                              settings.maximum_damping);
     v *= length;
-    if (functional.project(v, u) > 0)
+    const bool cut_off =
+      true_on_any_process(functional.project(v, u) > 0, problem.communicator());
+    if (cut_off)
       {
         // The obstacle has cut the correction off: minimise along what is left
         // of it, as far as that is admissible.
-        problem.matrix.vmult(Av.begin(), v.begin());
+        multiply(Av, v);
+        products          = along(v, Av, residual, 0);
         const double rest = functional.minimize_along(
           v,
           u,
           state,
-          residual * v,
-          v * Av,
+          products.slope,
+          products.curvature,
           functional.admissible_length(v, u, settings.maximum_damping));
         v *= rest;
         length *= rest;
       }
     u += v;
+    smoother.ghosts().update(u.begin(), dim);
     return length;
+  }
+
+
+
+  template <int dim>
+  void
+  MonotoneMultigrid<dim>::multiply(VectorType &Av, VectorType &v) const
+  {
+    smoother.ghosts().update(v.begin(), dim);
+    problem.matrix.vmult(Av.begin(), v.begin());
+  }
+
+
+
+  template <int dim>
+  typename MonotoneMultigrid<dim>::Products
+  MonotoneMultigrid<dim>::along(const VectorType  &v,
+                                const VectorType  &Av,
+                                const VectorType  &residual,
+                                const unsigned int n_changed) const
+  {
+    std::array<double, 3> sums{{0., 0., 1. * n_changed}};
+    for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
+      {
+        sums[0] += residual.local_element(i) * v.local_element(i);
+        sums[1] += v.local_element(i) * Av.local_element(i);
+      }
+    sums = sum_over_processes(sums, problem.communicator());
+    return {sums[0], sums[1], static_cast<std::size_t>(sums[2])};
   }
 
 

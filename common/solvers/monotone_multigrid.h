@@ -21,7 +21,7 @@ namespace Friction
     double increment; ///< energy norm of the increment, relative to u's
     double energy;    ///< of the smoothed iterate
     double damping;   ///< step length of the coarse correction
-    double truncated; ///< components held at contact nodes
+    double truncated; ///< components held at all contact nodes
     double residual;  ///< Euclidean norm of the truncated residual
   };
 
@@ -36,7 +36,8 @@ namespace Friction
     double contraction() const;
   };
 
-  /** Seconds of wall time by part, and sizes of work; summed over all calls. */
+  /** Seconds of this process' wall time by part, and sizes of work; summed over
+   * all calls. */
   struct MultigridCost
   {
     double       leading_sweeps    = 0;
@@ -74,8 +75,7 @@ namespace Friction
 
     /** What the references in @p problem refer to, and @p hierarchy, must
      * outlive the object. */
-    MonotoneMultigrid(const DoFHandler<dim>      &dof_handler,
-                      const LevelHierarchy<dim>  &hierarchy,
+    MonotoneMultigrid(const LevelHierarchy<dim>  &hierarchy,
                       const DiscreteProblem<dim> &problem,
                       const SolverSettings       &settings);
 
@@ -83,7 +83,8 @@ namespace Friction
      * Iterates until the relative increment is at most the inner tolerance.
      *
      * @param u  initial guess and solution; must be admissible and have the
-     *           prescribed values. Values at hanging nodes are not touched.
+     *           prescribed values. Values at hanging nodes are not touched. On
+     *           return its ghosts are valid, see MonotoneSmoother::ghosts().
      * @param state  likewise.
      * @param update_normal_forces  Algorithm 3: Coulomb friction, whose normal
      *           forces are updated inside the leading relaxation. Otherwise
@@ -94,8 +95,9 @@ namespace Friction
                           const bool      update_normal_forces,
                           const Progress &progress = {});
 
-    /** Sets the normal forces of @p state to those of @p u at nodes in contact
-     * and to zero elsewhere; returns the residual f - A u. */
+    /** Sets the normal forces of @p state to those of @p u, whose ghosts must
+     * be valid, at nodes in contact and to zero elsewhere; returns the residual
+     * f - A u. */
     VectorType update_normal_forces(ContactState     &state,
                                     const VectorType &u) const;
 
@@ -138,6 +140,22 @@ namespace Friction
                    const ContactState &state,
                    Recombination<dim> &recombination,
                    CycleInfo          &info);
+
+    // Av = A v, with the ghosts of v brought up to date.
+    void multiply(VectorType &Av, VectorType &v) const;
+
+    // What the line search along v needs to know of its quadratic part, and a
+    // number that is summed up in passing.
+    struct Products
+    {
+      double      slope, curvature;
+      std::size_t n_changed;
+    };
+
+    Products along(const VectorType  &v,
+                   const VectorType  &Av,
+                   const VectorType  &residual,
+                   const unsigned int n_changed) const;
   };
 } // namespace Friction
 

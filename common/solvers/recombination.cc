@@ -1,3 +1,4 @@
+#include <common/parallel/reductions.h>
 #include <common/solvers/recombination.h>
 
 #include <Eigen/Dense>
@@ -56,27 +57,35 @@ namespace Friction
   {
     std::vector<const VectorType *> basis = {&v}, images = {&Av};
 
+    if (steps.empty())
+      return 0;
+
     // Steps in the free subspace, up to the rounding of the iterates
     // themselves.
-    const double accuracy =
-      last_iterate.size() > 0 ? 1e-13 * last_iterate.linfty_norm() : 0.;
+    const MPI_Comm      comm   = v.get_mpi_communicator();
+    const unsigned int  n_dofs = v.locally_owned_size();
+    std::vector<double> deviations(1 + steps.size(), 0.);
+    for (unsigned int i = 0; i < n_dofs; ++i)
+      deviations[0] = std::max(deviations[0],
+                               1e-13 * std::abs(last_iterate.local_element(i)));
     for (unsigned int i = 0; i < steps.size(); ++i)
-      {
-        double deviation = 0;
-        for (const unsigned int node : truncation.special_nodes())
+      for (const unsigned int node : truncation.special_nodes())
+        if (dim * node < n_dofs)
           {
             const double        *s = steps[i].begin() + dim * node;
             const NodeValue<dim> Ts =
               times<dim>(truncation.projector(node).data(), s);
             for (unsigned int d = 0; d < dim; ++d)
-              deviation = std::max(deviation, std::abs(Ts[d] - s[d]));
+              deviations[1 + i] =
+                std::max(deviations[1 + i], std::abs(Ts[d] - s[d]));
           }
-        if (deviation <= accuracy)
-          {
-            basis.push_back(&steps[i]);
-            images.push_back(&products[i]);
-          }
-      }
+    max_over_processes(deviations, comm);
+    for (unsigned int i = 0; i < steps.size(); ++i)
+      if (deviations[1 + i] <= deviations[0])
+        {
+          basis.push_back(&steps[i]);
+          images.push_back(&products[i]);
+        }
     const unsigned int n = basis.size();
     if (n == 1)
       return 0;
@@ -86,22 +95,39 @@ namespace Friction
     const auto friction = [&](const VectorType &a, const VectorType &b) {
       double sum = 0;
       for (const unsigned int node : truncation.special_nodes())
-        {
-          const NodeValue<dim> image = times<dim>(
-            truncation.curvature(node).data(), b.begin() + dim * node);
-          sum += dot<dim>(a.begin() + dim * node, image.data());
-        }
+        if (dim * node < n_dofs)
+          {
+            const NodeValue<dim> image = times<dim>(
+              truncation.curvature(node).data(), b.begin() + dim * node);
+            sum += dot<dim>(a.begin() + dim * node, image.data());
+          }
+      return sum;
+    };
+    const auto share = [&](const VectorType &a, const VectorType &b) {
+      double sum = 0;
+      for (unsigned int i = 0; i < n_dofs; ++i)
+        sum += a.local_element(i) * b.local_element(i);
       return sum;
     };
 
-    Eigen::MatrixXd gram(n, n);
-    Eigen::VectorXd rhs(n);
+    // All scalar products in one reduction.
+    std::vector<double> products_of_all;
     for (unsigned int i = 0; i < n; ++i)
       {
-        rhs(i) = r * *basis[i];
+        products_of_all.push_back(share(r, *basis[i]));
         for (unsigned int j = 0; j <= i; ++j)
-          gram(i, j) = gram(j, i) =
-            *basis[i] * *images[j] + friction(*basis[i], *basis[j]);
+          products_of_all.push_back(share(*basis[i], *images[j]) +
+                                    friction(*basis[i], *basis[j]));
+      }
+    sum_over_processes(products_of_all, comm);
+    Eigen::MatrixXd gram(n, n);
+    Eigen::VectorXd rhs(n);
+    auto            next = products_of_all.begin();
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        rhs(i) = *next++;
+        for (unsigned int j = 0; j <= i; ++j)
+          gram(i, j) = gram(j, i) = *next++;
       }
     // Scaled to a unit diagonal; directions that are numerically dependent are
     // left out by the pivoted factorisation.

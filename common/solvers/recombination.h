@@ -39,7 +39,7 @@ namespace Friction
      * combination of v and previous steps that minimises the energy of the
      * linearised problem with truncated residual @p r, the second derivative of
      * friction in @p truncation included; @p Av is updated alike.
-     * Returns the number of previous steps that took part.
+     * Returns the number of previous steps that took part. Collective.
      */
     unsigned int improve(VectorType            &v,
                          VectorType            &Av,

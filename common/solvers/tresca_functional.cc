@@ -1,6 +1,8 @@
+#include <common/parallel/reductions.h>
 #include <common/solvers/tresca_functional.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -45,12 +47,24 @@ namespace Friction
 
 
 
-  // u.Au/2 - f.u = -u.(r+f)/2. Values of u at hanging nodes meet zero rows.
   template <int dim>
   double
   TrescaFunctional<dim>::energy(const VectorType   &u,
                                 const VectorType   &r,
                                 const ContactState &state) const
+  {
+    return sum_over_processes(energy_share(u, r, state),
+                              problem.communicator());
+  }
+
+
+
+  // u.Au/2 - f.u = -u.(r+f)/2. Values of u at hanging nodes meet zero rows.
+  template <int dim>
+  double
+  TrescaFunctional<dim>::energy_share(const VectorType   &u,
+                                      const VectorType   &r,
+                                      const ContactState &state) const
   {
     double sum = 0;
     for (unsigned int node = 0; node < problem.constraints.n_owned_nodes();
@@ -81,7 +95,7 @@ namespace Friction
     double largest = -std::numeric_limits<double>::infinity();
     for (const ContactNode<dim> &node : problem.contact)
       largest = std::max(largest, normal_component(node, u) - node.gap);
-    return largest;
+    return max_over_processes(largest, problem.communicator());
   }
 
 
@@ -186,50 +200,70 @@ namespace Friction
               terms.push_back(term);
           }
 
-    // The derivative from the right; it never decreases.
-    const auto derivative = [&](const double alpha) {
-      double value = alpha * curvature - slope;
-      for (const Term &t : terms)
-        {
-          const double inner  = t.uv + alpha * t.vv;
-          const double square = t.uu + alpha * (t.uv + inner);
-          // At rest the node starts to move along v.
-          value += t.bound *
-            (square > 1e-30 * (t.uu + t.vv) ? inner / std::sqrt(square)
-                                            : std::sqrt(t.vv));
-        }
-      return value;
+    // The derivative from the right, which never decreases, at several points
+    // at once.
+    constexpr unsigned int n_trials = 4;
+    using Values                    = std::array<double, n_trials>;
+    const auto derivatives          = [&](const Values &alphas) {
+      Values values{};
+      for (unsigned int i = 0; i < n_trials; ++i)
+        for (const Term &t : terms)
+          {
+            const double inner  = t.uv + alphas[i] * t.vv;
+            const double square = t.uu + alphas[i] * (t.uv + inner);
+            // At rest the node starts to move along v.
+            values[i] += t.bound *
+              (square > 1e-30 * (t.uu + t.vv) ? inner / std::sqrt(square)
+                                                       : std::sqrt(t.vv));
+          }
+      values = sum_over_processes(values, problem.communicator());
+      for (unsigned int i = 0; i < n_trials; ++i)
+        values[i] += alphas[i] * curvature - slope;
+      return values;
     };
 
-    if (!(derivative(0.) < 0.))
-      return 0.;
-    if (terms.empty())
-      return std::min(largest, slope / curvature);
-    if (derivative(largest) <= 0.)
-      return largest;
+    if (!state.has_friction())
+      return slope > 0 ? std::min(largest, slope / curvature) : 0.;
 
-    // Regula falsi with bisection as a safeguard. Without a kink in between the
-    // derivative is close to linear, and one or two steps suffice.
-    double low = 0., high = largest;
-    double d_low = derivative(low), d_high = derivative(high);
-    for (unsigned int i = 0; i < 100 && high - low > 1e-12 * high; ++i)
+    // Without a kink in between the derivative is close to linear, and one or
+    // two rounds suffice. Each leaves the smallest interval between trials in
+    // which the sign changes: that of regula falsi, and points to its left and
+    // right and in the middle of the interval.
+    const double guess = std::min(largest, slope / curvature);
+    Values       alphas{{0., largest, guess, .5 * guess}};
+    Values       d   = derivatives(alphas);
+    double       low = 0., high = largest, d_low = d[0], d_high = d[1];
+    if (!(d_low < 0.))
+      return 0.;
+    if (d_high <= 0.)
+      return largest;
+    for (unsigned int round = 0; round < 30; ++round)
       {
-        double trial = low - d_low * (high - low) / (d_high - d_low);
-        if (i % 3 == 2 || !(trial > low && trial < high))
-          trial = .5 * (low + high);
-        const double d = derivative(trial);
-        if (d <= 0)
+        for (unsigned int i = 0; i < n_trials; ++i)
           {
-            low   = trial;
-            d_low = d;
+            if (std::abs(d[i]) <= 1e-13 * std::abs(slope))
+              return alphas[i];
+            if (d[i] <= 0 && alphas[i] > low)
+              {
+                low   = alphas[i];
+                d_low = d[i];
+              }
+            else if (d[i] > 0 && alphas[i] < high)
+              {
+                high   = alphas[i];
+                d_high = d[i];
+              }
           }
-        else
-          {
-            high   = trial;
-            d_high = d;
-          }
-        if (std::abs(d) <= 1e-13 * std::abs(slope))
-          return trial;
+        const double width = high - low;
+        if (width <= 1e-12 * high)
+          break;
+        const double trial =
+          std::min(high, std::max(low, low - d_low * width / (d_high - d_low)));
+        alphas = {{trial,
+                   std::max(low, trial - .01 * width),
+                   std::min(high, trial + .01 * width),
+                   .5 * (low + high)}};
+        d      = derivatives(alphas);
       }
     return low;
   }
@@ -254,7 +288,7 @@ namespace Friction
         if (v_n > rounding && v_n * length > room + rounding)
           length = (room + rounding) / v_n;
       }
-    return length;
+    return -max_over_processes(-length, problem.communicator());
   }
 
 

@@ -19,29 +19,35 @@ namespace Friction
     /** @p problem is copied; what it refers to is not. */
     explicit TrescaFunctional(const DiscreteProblem<dim> &problem);
 
-    /** The energy. Costs a product with the stiffness matrix. */
+    /** The energy. Costs a product with the stiffness matrix, for which the
+     * ghosts of @p u must be valid. Collective. */
     double energy(const VectorType &u, const ContactState &state) const;
 
-    /** The energy, given the residual r = f - A u. */
+    /** The energy, given the residual r = f - A u. Collective. */
     double energy(const VectorType   &u,
                   const VectorType   &r,
                   const ContactState &state) const;
 
+    /** This process' share of it. */
+    double energy_share(const VectorType   &u,
+                        const VectorType   &r,
+                        const ContactState &state) const;
+
     /** The largest $u_n - g$ over all contact nodes; admissible if not
-     * positive. */
+     * positive. Collective. */
     double largest_penetration(const VectorType &u) const;
 
     /**
      * Changes @p v such that u + v does not penetrate the obstacle. Returns the
-     * number of nodes where it had to.
+     * number of this process' nodes where it had to.
      */
     unsigned int project(VectorType &v, const VectorType &u) const;
 
     /**
      * Changes @p v such that at each sliding node $(u+v)_T\cdot u_T\ge0$: no
      * node slips back beyond the line through $u_T=0$ perpendicular to its
-     * slip. Prescribed components stay as they are. Returns the number of nodes
-     * where it had to.
+     * slip. Prescribed components stay as they are. Returns the number of this
+     * process' nodes where it had to.
      */
     unsigned int keep_slip(VectorType         &v,
                            const VectorType   &u,
@@ -52,6 +58,8 @@ namespace Friction
      * largest, the obstacle being disregarded. The energy is convex along the
      * line and smooth but for the points where a node comes to rest, so that
      * regula falsi on the derivative, safeguarded by bisection, finds it.
+     * Several points are tried at a time, since with several processes each
+     * trial is a reduction. Collective.
      *
      * @param slope      $(f - A u)\cdot v$, the decrease of the quadratic part.
      * @param curvature  $v^T A v$.

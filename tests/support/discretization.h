@@ -39,10 +39,10 @@ namespace Tests
    */
   template <int dim>
   std::unique_ptr<parallel::distributed::Triangulation<dim>>
-  make_triangulation()
+  make_triangulation(const MPI_Comm communicator = MPI_COMM_WORLD)
   {
     return std::make_unique<parallel::distributed::Triangulation<dim>>(
-      MPI_COMM_WORLD,
+      communicator,
       Triangulation<dim>::limit_level_difference_at_vertices,
       parallel::distributed::Triangulation<dim>::construct_multigrid_hierarchy);
   }
@@ -84,21 +84,23 @@ namespace Tests
                                                  condition.components);
       for (const auto &pinned : scene.pinned_points())
         for (const auto &cell : dof_handler.active_cell_iterators())
-          for (const unsigned int v : cell->vertex_indices())
-            if (cell->vertex(v).distance(pinned.point) <
-                1e-6 * cell->diameter())
-              {
-                const auto dof = cell->vertex_dof_index(v, pinned.component);
-                if (!dirichlet.is_constrained(dof))
-                  {
-                    dirichlet.add_line(dof);
-                    dirichlet.set_inhomogeneity(dof, pinned.value);
-                  }
-              }
+          if (!cell->is_artificial())
+            for (const unsigned int v : cell->vertex_indices())
+              if (cell->vertex(v).distance(pinned.point) <
+                  1e-6 * cell->diameter())
+                {
+                  const auto dof = cell->vertex_dof_index(v, pinned.component);
+                  if (!dirichlet.is_constrained(dof))
+                    {
+                      dirichlet.add_line(dof);
+                      dirichlet.set_inhomogeneity(dof, pinned.value);
+                    }
+                }
       dirichlet.close();
 
+      make_stiffness_pattern(dof_handler, hanging, pattern);
       constraints = std::make_unique<NodalConstraints<dim>>(
-        dof_handler, hanging, dirichlet);
+        dof_handler, hanging, dirichlet, coupled_dofs(dof_handler, pattern));
       assemble(scene);
       contact = std::make_unique<ContactBoundary<dim>>(
         mapping,
@@ -109,8 +111,8 @@ namespace Tests
         scene.obstacle(),
         scene.contact_normal(),
         scene.ignores_prescribed_penetration());
-      hierarchy =
-        std::make_unique<LevelHierarchy<dim>>(dof_handler, *constraints);
+      hierarchy = std::make_unique<LevelHierarchy<dim>>(
+        dof_handler, *constraints, matrix);
       friction_law         = scene.friction_law();
       friction_coefficient = scene.friction_coefficient();
     }
@@ -155,13 +157,11 @@ namespace Tests
     double                                 friction_coefficient;
 
   private:
+    DynamicSparsityPattern pattern;
+
     void
     assemble(const Scene<dim> &scene)
     {
-      const IndexSet relevant =
-        DoFTools::extract_locally_relevant_dofs(dof_handler);
-      DynamicSparsityPattern pattern(relevant);
-      DoFTools::make_sparsity_pattern(dof_handler, pattern, hanging, false);
       TrilinosWrappers::SparseMatrix stiffness;
       stiffness.reinit(dof_handler.locally_owned_dofs(),
                        dof_handler.locally_owned_dofs(),

@@ -1,0 +1,173 @@
+#include <common/parallel/communication_count.h>
+#include <common/parallel/ghost_exchange.h>
+
+#include <algorithm>
+#include <map>
+
+namespace Friction
+{
+  namespace
+  {
+    // Messages between the same two processes keep their order, so that one tag
+    // is enough.
+    constexpr int tag = 4711;
+  } // namespace
+
+
+
+  GhostExchange::GhostExchange(const NodeNumbering             &numbering,
+                               const std::vector<unsigned int> &ghosts)
+    : comm(numbering.distribution().communicator())
+  {
+    const NodeDistribution &distribution = numbering.distribution();
+    if (distribution.n_processes() == 1)
+      return;
+
+    std::map<unsigned int, std::vector<GlobalNode>> wanted;
+    std::map<unsigned int, Neighbour>               by_rank;
+    for (const unsigned int ghost : ghosts)
+      {
+        const GlobalNode   node = numbering.global(ghost);
+        const unsigned int rank = distribution.owner(node);
+        Assert(rank != distribution.rank(), ExcInternalError());
+        wanted[rank].push_back(node);
+        by_rank[rank].ghosts.push_back(ghost);
+      }
+    for (const auto &request : Utilities::MPI::some_to_some(comm, wanted))
+      for (const GlobalNode node : request.second)
+        by_rank[request.first].owned.push_back(distribution.local(node));
+
+    for (auto &entry : by_rank)
+      {
+        entry.second.rank = entry.first;
+        neighbours.push_back(std::move(entry.second));
+      }
+  }
+
+
+
+  void
+  GhostExchange::communicate(const bool to_owners)
+  {
+    requests.clear();
+    for (Neighbour &n : neighbours)
+      {
+        n.received.resize(n_values *
+                          (to_owners ? n.owned.size() : n.ghosts.size()));
+        if (!n.received.empty())
+          {
+            requests.emplace_back();
+            MPI_Irecv(n.received.data(),
+                      n.received.size(),
+                      MPI_DOUBLE,
+                      n.rank,
+                      tag,
+                      comm,
+                      &requests.back());
+          }
+      }
+    for (Neighbour &n : neighbours)
+      if (!n.to_send.empty())
+        {
+          count_message(n.to_send.size() * sizeof(double));
+          requests.emplace_back();
+          MPI_Isend(n.to_send.data(),
+                    n.to_send.size(),
+                    MPI_DOUBLE,
+                    n.rank,
+                    tag,
+                    comm,
+                    &requests.back());
+        }
+  }
+
+
+
+  void
+  GhostExchange::start(const double *values, const unsigned int values_per_node)
+  {
+    Assert(requests.empty(), ExcMessage("The last exchange is not finished."));
+    n_values = values_per_node;
+    for (Neighbour &n : neighbours)
+      {
+        n.to_send.resize(n.owned.size() * n_values);
+        double *target = n.to_send.data();
+        for (const unsigned int node : n.owned)
+          target =
+            std::copy_n(values + static_cast<std::size_t>(n_values) * node,
+                        n_values,
+                        target);
+      }
+    communicate(false);
+  }
+
+
+
+  bool
+  GhostExchange::arrived()
+  {
+    int flag = 1;
+    if (!requests.empty())
+      MPI_Testall(requests.size(), requests.data(), &flag, MPI_STATUSES_IGNORE);
+    return flag != 0;
+  }
+
+
+
+  void
+  GhostExchange::finish(double *values)
+  {
+    if (!requests.empty())
+      MPI_Waitall(requests.size(), requests.data(), MPI_STATUSES_IGNORE);
+    requests.clear();
+    for (const Neighbour &n : neighbours)
+      {
+        const double *source = n.received.data();
+        for (const unsigned int node : n.ghosts)
+          {
+            std::copy_n(source,
+                        n_values,
+                        values + static_cast<std::size_t>(n_values) * node);
+            source += n_values;
+          }
+      }
+  }
+
+
+
+  void
+  GhostExchange::collect(double            *values,
+                         const unsigned int values_per_node,
+                         const Combine      combine)
+  {
+    Assert(requests.empty(), ExcMessage("The last exchange is not finished."));
+    n_values = values_per_node;
+    for (Neighbour &n : neighbours)
+      {
+        n.to_send.resize(n.ghosts.size() * n_values);
+        double *target = n.to_send.data();
+        for (const unsigned int node : n.ghosts)
+          target =
+            std::copy_n(values + static_cast<std::size_t>(n_values) * node,
+                        n_values,
+                        target);
+      }
+    communicate(true);
+    if (!requests.empty())
+      MPI_Waitall(requests.size(), requests.data(), MPI_STATUSES_IGNORE);
+    requests.clear();
+    for (const Neighbour &n : neighbours)
+      {
+        const double *source = n.received.data();
+        for (const unsigned int node : n.owned)
+          for (unsigned int d = 0; d < n_values; ++d, ++source)
+            {
+              double &value =
+                values[static_cast<std::size_t>(n_values) * node + d];
+              value = combine == Combine::add ? value + *source
+                : combine == Combine::minimum ? std::min(value, *source)
+                                              : std::max(value, *source);
+            }
+      }
+  }
+} // namespace Friction

@@ -1,0 +1,50 @@
+#include <common/parallel/node_distribution.h>
+
+#include <algorithm>
+
+namespace Friction
+{
+  NodeDistribution::NodeDistribution(const unsigned int n_owned,
+                                     const MPI_Comm     comm)
+    : comm(comm)
+    , my_rank(Utilities::MPI::this_mpi_process(comm))
+    , starts(1, 0)
+  {
+    for (const unsigned int n : Utilities::MPI::all_gather(comm, n_owned))
+      starts.push_back(starts.back() + n);
+  }
+
+
+
+  unsigned int
+  NodeDistribution::owner(const GlobalNode node) const
+  {
+    return std::upper_bound(starts.begin(), starts.end(), node) -
+      starts.begin() - 1;
+  }
+
+
+
+  unsigned int
+  NodeNumbering::add(const GlobalNode node)
+  {
+    if (nodes.is_owned(node))
+      return nodes.local(node);
+    const auto entry = local_of_ghost.emplace(node, size());
+    if (entry.second)
+      ghosts.push_back(node);
+    return entry.first->second;
+  }
+
+
+
+  unsigned int
+  NodeNumbering::find(const GlobalNode node) const
+  {
+    if (nodes.is_owned(node))
+      return nodes.local(node);
+    const auto entry = local_of_ghost.find(node);
+    return entry == local_of_ghost.end() ? numbers::invalid_unsigned_int
+                                         : entry->second;
+  }
+} // namespace Friction
