@@ -41,21 +41,17 @@
 #include <common/multigrid/leaf_matrix.h>
 #include <common/multigrid/level_hierarchy.h>
 #include <common/multigrid/node_numbering.h>
-#include <common/output/console.h>
-#include <common/output/fields.h>
-#include <common/output/history.h>
+#include <common/output/checkpoint.h>
 #include <common/output/level_records.h>
-#include <common/output/run_directory.h>
-#include <common/scene/command_line.h>
+#include <common/output/run_output.h>
+#include <common/program/command_line.h>
 #include <common/scene/parameters.h>
 #include <common/scene/scene.h>
 #include <common/solvers/coulomb_solver.h>
 #include <common/solvers/initial_guess.h>
 
-#include <iomanip>
 #include <iostream>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -96,15 +92,15 @@ namespace StepFriction2d
   class ContactProblem
   {
   public:
-    ContactProblem(const Parameters &parameters, std::ostream &console);
+    explicit ContactProblem(const Parameters &parameters);
 
-    bool run();
+    bool run(const Start start);
 
   private:
     // The functions in the order in which they are called. Everything up to
     // <code>solve()</code> is linear elasticity, plus knowledge of the
     // obstacle. <code>run()</code> says whether all levels could be solved.
-    void make_coarse_mesh();
+    unsigned int make_first_mesh(const Start start);
 
     void setup_system();
 
@@ -158,19 +154,16 @@ namespace StepFriction2d
     std::unique_ptr<ContactState> state;
     SolverReport                  report;
 
-    // Where results go. The order matters: the directory is created first, so
-    // that a run which cannot write anything fails in its first second and not
-    // after its last level.
-    RunDirectory     directory;
-    Console          console;
-    History<dim>     history;
-    FieldWriter<dim> fields;
+    // Where results go: the console, <code>history.h5</code>, files for
+    // ParaView, and checkpoints. The constructor creates the directory for
+    // them, so that a run which cannot write anything fails in its first second
+    // and not after its last level.
+    RunOutput<dim> output;
 
     // Wall times of the present level. What is done once per mesh and what the
     // iteration takes are counted separately.
-    double setup_seconds    = 0.;
-    double solve_seconds    = 0.;
-    double last_exact_error = 0.;
+    double setup_seconds = 0.;
+    double solve_seconds = 0.;
   };
 
 
@@ -183,8 +176,7 @@ namespace StepFriction2d
   // share but a vertex within one level of each other. Our level matrices rely
   // on it: it makes each hanging node belong to exactly one level.
   template <int dim>
-  ContactProblem<dim>::ContactProblem(const Parameters &parameters,
-                                      std::ostream     &out)
+  ContactProblem<dim>::ContactProblem(const Parameters &parameters)
     : parameters(parameters)
     , scene(parameters)
     , triangulation(MPI_COMM_WORLD,
@@ -194,34 +186,30 @@ namespace StepFriction2d
     , mapping(1)
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
-    , directory(parameters.output.directory)
-    , console(out,
-              parameters.output.times ? Console::Times::shown
-                                      : Console::Times::hidden,
-              parameters.output.verbosity == Verbosity::quiet)
-    , history(directory.file("history.h5"),
-              parameters.name,
-              parameters.text,
-              FRICTION_VERSION)
-    , fields(directory,
-             scene.material().lambda(),
-             scene.material().mu(),
-             scene.contact_boundary_id())
+    , output(parameters, scene, std::cout, FRICTION_VERSION, MPI_COMM_WORLD)
   {}
 
 
 
-  // @sect4{ContactProblem::make_coarse_mesh}
+  // @sect4{ContactProblem::make_first_mesh}
 
   // The mesh is a matter of the scene. The coarsest level is solved directly,
   // so it should be as coarse as the geometry allows; whatever else is refined
   // globally at the start only has the first level begin on a finer mesh.
+  //
+  // A checkpoint holds refinements, not vertices. So the coarse mesh has to be
+  // made in either case, and p4est then refines it as it was, and distributes
+  // it over as many processes as there are now.
   template <int dim>
-  void
-  ContactProblem<dim>::make_coarse_mesh()
+  unsigned int
+  ContactProblem<dim>::make_first_mesh(const Start start)
   {
     scene.make_coarse_mesh(triangulation);
+    if (start == Start::from_checkpoint)
+      return output.load_checkpoint(triangulation);
+
     triangulation.refine_global(parameters.refinement.initial_refinements);
+    return 0;
   }
 
 
@@ -578,7 +566,7 @@ namespace StepFriction2d
       solver.solve(displacement,
                    *state,
                    [&](const unsigned int cycle, const double increment) {
-                     console.progress(level, cycle, increment);
+                     output.console().progress(level, cycle, increment);
                    });
     solve_seconds = timer.wall_time();
 
@@ -654,8 +642,8 @@ namespace StepFriction2d
       any_marked |= mark_contact_zone(
         dof_handler, *nodal_constraints, *contact_boundary, *state);
     if (!any_marked)
-      console.note(
-        state->n_contact() > 0
+      output.console().note(
+        Utilities::MPI::sum(state->n_contact(), MPI_COMM_WORLD) > 0
           ? "Nothing is left to refine: there is no error."
           : "Nothing is left to refine: there is no error, and no node "
             "in contact. If there should be, start with a finer mesh.");
@@ -732,8 +720,9 @@ namespace StepFriction2d
   //   mentions, and is zero for Algorithm 3; <code>certificate</code> is the
   //   largest of its six violations.
   //
-  // The history is rewritten as a whole after each level and put in place by
-  // renaming. A run that is killed leaves all levels that were complete.
+  // All of this is about the nodes of all processes. The history is rewritten
+  // as a whole after each level and put in place by renaming. A run that is
+  // killed leaves all levels that were complete.
   template <int dim>
   void
   ContactProblem<dim>::record_level(const unsigned int   level,
@@ -750,36 +739,25 @@ namespace StepFriction2d
     records.level.setup_seconds   = setup_seconds;
     records.level.solve_seconds   = solve_seconds;
 
-    console.level_complete(records.level);
-    history.add_level(
-      records.level, records.cycles, records.contact, records.outer);
-    if (parameters.output.fields)
-      fields.write_level(level,
-                         mapping,
-                         dof_handler,
-                         displacement,
-                         hanging_node_constraints,
-                         records.contact,
-                         estimate.cell_errors.size() > 0 ? &estimate.cell_errors
-                                                         : nullptr);
+    output.add_level(records,
+                     mapping,
+                     dof_handler,
+                     hanging_node_constraints,
+                     displacement,
+                     estimate.cell_errors);
 
     // Some scenes know their solution. Orders of convergence make sense if the
     // width of the mesh is halved everywhere; a patch test, whose solution is
     // linear, has none, for there a method without penalty is exact up to
     // rounding and the tolerance of the solver.
     if (scene.exact_displacement() != nullptr)
-      {
-        const ExactError error =
-          compute_exact_error(mapping,
-                              dof_handler,
-                              scene.material(),
-                              *scene.exact_displacement(),
-                              displacement);
-        const bool uniform =
-          parameters.refinement.strategy == RefinementStrategy::uniform;
-        console.note(error.describe(uniform ? last_exact_error : 0.));
-        last_exact_error = error.energy;
-      }
+      output.add_exact_error(compute_exact_error(mapping,
+                                                 dof_handler,
+                                                 scene.material(),
+                                                 *scene.exact_displacement(),
+                                                 displacement),
+                             parameters.refinement.strategy ==
+                               RefinementStrategy::uniform);
   }
 
 
@@ -794,34 +772,37 @@ namespace StepFriction2d
   // Above it we do not give up, since in practice many scenes have a solution
   // there. But this is not known, and if there are several, another algorithm
   // or another initial guess may legitimately lead elsewhere.
+  //
+  // Between two levels is the moment for a checkpoint, if the scene wants any:
+  // a mesh and two vectors on it are all that the next level needs of those
+  // before. <code>state</code> is not among it, for it will be made from the
+  // tractions, and neither is anything of the multigrid method. What has been
+  // recorded so far is added, so that a run continued with
+  // <code>--restart</code> ends with the same table and the same files as if it
+  // had never been interrupted. There is none after the last level, because
+  // there is no mesh to go on with; whoever asks for more levels then starts
+  // from the checkpoint before it and solves the last level once more.
   template <int dim>
   bool
-  ContactProblem<dim>::run()
+  ContactProblem<dim>::run(const Start start)
   {
-    if (scene.friction_law() == FrictionLaw::coulomb &&
-        scene.friction_coefficient() >
-          eck_bound(dim, scene.material().poisson_ratio()))
-      {
-        std::ostringstream text;
-        text << "Warning: the coefficient of friction "
-             << scene.friction_coefficient() << " is above Eck's bound "
-             << std::setprecision(3)
-             << eck_bound(dim, scene.material().poisson_ratio())
-             << " for this Poisson ratio, below which a solution is known to "
-                "exist; there may be none, or several.";
-        console.warning(text.str());
-      }
+    if (!scene.warning().empty())
+      output.console().warning(scene.warning());
 
     // The first guess is the undeformed body without any forces; on a coarse
-    // mesh that is good enough.
-    make_coarse_mesh();
-    Timer timer;
+    // mesh that is good enough. A run that is restarted has a better one: what
+    // it had interpolated to this mesh when it was interrupted.
+    const unsigned int first_level = make_first_mesh(start);
+    Timer              timer;
     setup_system();
     setup_seconds = timer.wall_time();
     displacement.reinit(nodal_constraints->partitioner());
     tractions.reinit(nodal_constraints->partitioner());
+    if (start == Start::from_checkpoint)
+      Checkpoints::load_vectors(
+        dof_handler, std::vector<VectorType *>{&displacement, &tractions});
 
-    for (unsigned int level = 0;; ++level)
+    for (unsigned int level = first_level;; ++level)
       {
         timer.restart();
         assemble_system();
@@ -847,15 +828,14 @@ namespace StepFriction2d
         // with <code>Outer damping</code> below one may still converge.
         if (!report.converged)
           {
-            console.note(
-              "No convergence on level " + std::to_string(level) + " within " +
-              std::to_string(report.cycles.size()) +
-              " cycles. Certificate: " + report.certificate.describe() + ".");
+            output.add_failure(level, report);
             return false;
           }
         if (last || !mark_cells(estimate))
           return true;
         refine_mesh();
+        output.save_checkpoint(
+          level + 1, triangulation, dof_handler, {&displacement, &tractions});
       }
   }
 } // namespace StepFriction2d
@@ -870,14 +850,13 @@ namespace StepFriction2d
 int
 main(int argc, char *argv[])
 {
-  return Friction::run_program(argc,
-                               argv,
-                               "step-friction-2d",
-                               "two",
-                               "hertz.prm 'Contact/Friction coefficient=0.05'",
-                               [](const Friction::Parameters &parameters) {
-                                 StepFriction2d::ContactProblem<2> problem(
-                                   parameters, std::cout);
-                                 return problem.run();
-                               });
+  return Friction::run_program(
+    argc,
+    argv,
+    "step-friction-2d",
+    "two",
+    "hertz.prm 'Contact/Friction coefficient=0.05'",
+    [](const Friction::Parameters &parameters, const Friction::Start start) {
+      return StepFriction2d::ContactProblem<2>(parameters).run(start);
+    });
 }

@@ -36,21 +36,17 @@
 #include <common/multigrid/leaf_matrix.h>
 #include <common/multigrid/level_hierarchy.h>
 #include <common/multigrid/node_numbering.h>
-#include <common/output/console.h>
-#include <common/output/fields.h>
-#include <common/output/history.h>
+#include <common/output/checkpoint.h>
 #include <common/output/level_records.h>
-#include <common/output/run_directory.h>
-#include <common/scene/command_line.h>
+#include <common/output/run_output.h>
+#include <common/program/command_line.h>
 #include <common/scene/parameters.h>
 #include <common/scene/scene.h>
 #include <common/solvers/coulomb_solver.h>
 #include <common/solvers/initial_guess.h>
 
-#include <iomanip>
 #include <iostream>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -68,7 +64,7 @@ namespace StepFriction3d
   // algorithms and the certificate. Here we explain what three dimensions add,
   // each at the place in the program where it happens:
   // - The coarse mesh decides about more than its number of cells
-  //   (<code>make_coarse_mesh()</code>).
+  //   (<code>make_first_mesh()</code>).
   // - Nodes hang <i>on</i> the contact boundary (<code>setup_system()</code>).
   //   There are two tangents at each contact node, one of which may be
   //   prescribed, and there are scenes whose prescribed displacements
@@ -85,15 +81,15 @@ namespace StepFriction3d
   class ContactProblem
   {
   public:
-    ContactProblem(const Parameters &parameters, std::ostream &console);
+    explicit ContactProblem(const Parameters &parameters);
 
-    bool run();
+    bool run(const Start start);
 
   private:
     // The functions in the order in which they are called. There is one more
     // than in two dimensions, because there is more to say about the contact
     // boundary.
-    void make_coarse_mesh();
+    unsigned int make_first_mesh(const Start start);
 
     void setup_system();
 
@@ -142,14 +138,10 @@ namespace StepFriction3d
     SolverReport                  report;
 
     // Where results go, and wall times.
-    RunDirectory     directory;
-    Console          console;
-    History<dim>     history;
-    FieldWriter<dim> fields;
+    RunOutput<dim> output;
 
-    double setup_seconds    = 0.;
-    double solve_seconds    = 0.;
-    double last_exact_error = 0.;
+    double setup_seconds = 0.;
+    double solve_seconds = 0.;
   };
 
 
@@ -162,8 +154,7 @@ namespace StepFriction3d
   // belong to several levels. With it, level matrices are sums of blocks of the
   // leaf matrix, as in two dimensions.
   template <int dim>
-  ContactProblem<dim>::ContactProblem(const Parameters &parameters,
-                                      std::ostream     &out)
+  ContactProblem<dim>::ContactProblem(const Parameters &parameters)
     : parameters(parameters)
     , scene(parameters)
     , triangulation(MPI_COMM_WORLD,
@@ -173,24 +164,12 @@ namespace StepFriction3d
     , mapping(1)
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
-    , directory(parameters.output.directory)
-    , console(out,
-              parameters.output.times ? Console::Times::shown
-                                      : Console::Times::hidden,
-              parameters.output.verbosity == Verbosity::quiet)
-    , history(directory.file("history.h5"),
-              parameters.name,
-              parameters.text,
-              FRICTION_VERSION)
-    , fields(directory,
-             scene.material().lambda(),
-             scene.material().mu(),
-             scene.contact_boundary_id())
+    , output(parameters, scene, std::cout, FRICTION_VERSION, MPI_COMM_WORLD)
   {}
 
 
 
-  // @sect4{ContactProblem::make_coarse_mesh}
+  // @sect4{ContactProblem::make_first_mesh}
 
   // A mesh of a round body is refined by putting new vertices of the mantle on
   // the mantle, which the manifold of the boundary takes care of. This is not
@@ -211,11 +190,15 @@ namespace StepFriction3d
   // coarsest problem, which is solved directly, is larger; that is the better
   // bargain.
   template <int dim>
-  void
-  ContactProblem<dim>::make_coarse_mesh()
+  unsigned int
+  ContactProblem<dim>::make_first_mesh(const Start start)
   {
     scene.make_coarse_mesh(triangulation);
+    if (start == Start::from_checkpoint)
+      return output.load_checkpoint(triangulation);
+
     triangulation.refine_global(parameters.refinement.initial_refinements);
+    return 0;
   }
 
 
@@ -653,7 +636,7 @@ namespace StepFriction3d
       solver.solve(displacement,
                    *state,
                    [&](const unsigned int cycle, const double increment) {
-                     console.progress(level, cycle, increment);
+                     output.console().progress(level, cycle, increment);
                    });
     solve_seconds = timer.wall_time();
 
@@ -731,8 +714,8 @@ namespace StepFriction3d
       any_marked |= mark_contact_zone(
         dof_handler, *nodal_constraints, *contact_boundary, *state);
     if (!any_marked)
-      console.note(
-        state->n_contact() > 0
+      output.console().note(
+        Utilities::MPI::sum(state->n_contact(), MPI_COMM_WORLD) > 0
           ? "Nothing is left to refine: there is no error."
           : "Nothing is left to refine: there is no error, and no node "
             "in contact. If there should be, start with a finer mesh.");
@@ -812,35 +795,24 @@ namespace StepFriction3d
     records.level.setup_seconds   = setup_seconds;
     records.level.solve_seconds   = solve_seconds;
 
-    console.level_complete(records.level);
-    history.add_level(
-      records.level, records.cycles, records.contact, records.outer);
-    if (parameters.output.fields)
-      fields.write_level(level,
-                         mapping,
-                         dof_handler,
-                         displacement,
-                         hanging_node_constraints,
-                         records.contact,
-                         estimate.cell_errors.size() > 0 ? &estimate.cell_errors
-                                                         : nullptr);
+    output.add_level(records,
+                     mapping,
+                     dof_handler,
+                     hanging_node_constraints,
+                     displacement,
+                     estimate.cell_errors);
 
     // The patch test <code>stick-slip</code> knows its solution. It is linear,
     // for a shear in any direction, and so the error is that of rounding and of
     // the solver's tolerance, whatever the mesh.
     if (scene.exact_displacement() != nullptr)
-      {
-        const ExactError error =
-          compute_exact_error(mapping,
-                              dof_handler,
-                              scene.material(),
-                              *scene.exact_displacement(),
-                              displacement);
-        const bool uniform =
-          parameters.refinement.strategy == RefinementStrategy::uniform;
-        console.note(error.describe(uniform ? last_exact_error : 0.));
-        last_exact_error = error.energy;
-      }
+      output.add_exact_error(compute_exact_error(mapping,
+                                                 dof_handler,
+                                                 scene.material(),
+                                                 *scene.exact_displacement(),
+                                                 displacement),
+                             parameters.refinement.strategy ==
+                               RefinementStrategy::uniform);
   }
 
 
@@ -851,31 +823,23 @@ namespace StepFriction3d
   // $\sqrt{1-\frac1{4(1-\nu)}}$, and smaller for positive Poisson ratios.
   template <int dim>
   bool
-  ContactProblem<dim>::run()
+  ContactProblem<dim>::run(const Start start)
   {
-    if (scene.friction_law() == FrictionLaw::coulomb &&
-        scene.friction_coefficient() >
-          eck_bound(dim, scene.material().poisson_ratio()))
-      {
-        std::ostringstream text;
-        text << "Warning: the coefficient of friction "
-             << scene.friction_coefficient() << " is above Eck's bound "
-             << std::setprecision(3)
-             << eck_bound(dim, scene.material().poisson_ratio())
-             << " for this Poisson ratio, below which a solution is known to "
-                "exist; there may be none, or several.";
-        console.warning(text.str());
-      }
+    if (!scene.warning().empty())
+      output.console().warning(scene.warning());
 
-    // We start from the undeformed body without forces.
-    make_coarse_mesh();
-    Timer timer;
+    // We start from the undeformed body without forces, or from a checkpoint.
+    const unsigned int first_level = make_first_mesh(start);
+    Timer              timer;
     setup_system();
     setup_seconds = timer.wall_time();
     displacement.reinit(nodal_constraints->partitioner());
     tractions.reinit(nodal_constraints->partitioner());
+    if (start == Start::from_checkpoint)
+      Checkpoints::load_vectors(
+        dof_handler, std::vector<VectorType *>{&displacement, &tractions});
 
-    for (unsigned int level = 0;; ++level)
+    for (unsigned int level = first_level;; ++level)
       {
         timer.restart();
         assemble_system();
@@ -898,15 +862,14 @@ namespace StepFriction3d
         // A level without a certificate ends the run.
         if (!report.converged)
           {
-            console.note(
-              "No convergence on level " + std::to_string(level) + " within " +
-              std::to_string(report.cycles.size()) +
-              " cycles. Certificate: " + report.certificate.describe() + ".");
+            output.add_failure(level, report);
             return false;
           }
         if (last || !mark_cells(estimate))
           return true;
         refine_mesh();
+        output.save_checkpoint(
+          level + 1, triangulation, dof_handler, {&displacement, &tractions});
       }
   }
 } // namespace StepFriction3d
@@ -926,8 +889,7 @@ main(int argc, char *argv[])
     "step-friction-3d",
     "three",
     "cylinder.prm 'Contact/Friction coefficient=0.05'",
-    [](const Friction::Parameters &parameters) {
-      StepFriction3d::ContactProblem<3> problem(parameters, std::cout);
-      return problem.run();
+    [](const Friction::Parameters &parameters, const Friction::Start start) {
+      return StepFriction3d::ContactProblem<3>(parameters).run(start);
     });
 }

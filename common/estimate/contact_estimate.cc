@@ -3,8 +3,6 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <vector>
-
 namespace Friction
 {
   template <int dim>
@@ -60,14 +58,19 @@ namespace Friction
                     const ContactBoundary<dim>  &contact_boundary,
                     const ContactState          &state)
   {
-    bool              any_marked = false;
-    std::vector<bool> touches(constraints.n_nodes(), false);
+    // Each process knows what its own nodes do, but its cells have vertices
+    // that belong to others.
+    VectorType touches(constraints.partitioner());
     for (unsigned int p = 0; p < contact_boundary.size(); ++p)
-      touches[contact_boundary[p].node] = state.in_contact(p);
+      touches.local_element(dim * contact_boundary[p].node) =
+        state.in_contact(p) ? 1. : 0.;
+    touches.update_ghost_values();
+
+    bool any_marked = false;
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (cell->is_locally_owned() && cell->at_boundary())
         for (const unsigned int v : cell->vertex_indices())
-          if (touches[constraints.node_of_dof(cell->vertex_dof_index(v, 0))])
+          if (touches(cell->vertex_dof_index(v, 0)) > 0.)
             {
               cell->set_refine_flag();
               any_marked = true;

@@ -8,10 +8,14 @@
 
 namespace Friction
 {
-  Console::Console(std::ostream &out, const Times times, const bool silent)
+  Console::Console(std::ostream  &out,
+                   const Times    times,
+                   const bool     silent,
+                   const MPI_Comm communicator)
     : out(out)
+    , first_process(dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
     , show_times(times == Times::shown)
-    , silent(silent)
+    , silent(silent || !first_process)
     , terminal(&out == &std::cout && ::isatty(STDOUT_FILENO) != 0)
     , level_start(Clock::now())
     , last_progress(level_start)
@@ -25,19 +29,17 @@ namespace Friction
     // The next level starts here.
     level_start   = Clock::now();
     last_progress = level_start;
+    ++rows;
     if (silent)
       return;
 
     clear_progress();
 
     std::ostringstream line;
-    if (!header_printed)
-      {
-        line << "level     cells      dofs  contact   sticky  outer  cycles"
-             << "   rate        energy" << (show_times ? "   seconds" : "")
-             << '\n';
-        header_printed = true;
-      }
+    if (rows == 1)
+      line << "level     cells      dofs  contact   sticky  outer  cycles"
+           << "   rate        energy" << (show_times ? "   seconds" : "")
+           << '\n';
 
     line << std::setw(5) << record.level << std::setw(10) << record.cells
          << std::setw(10) << record.dofs << std::setw(9) << record.contact_nodes
@@ -96,6 +98,10 @@ namespace Friction
   void
   Console::note(const std::string &text)
   {
+    Note note;
+    note.rows = rows;
+    note.text = text;
+    remarks.push_back(note);
     if (!silent)
       warning(text);
   }
@@ -105,8 +111,37 @@ namespace Friction
   void
   Console::warning(const std::string &text)
   {
+    if (!first_process)
+      return;
     clear_progress();
     out << text << std::endl;
+  }
+
+
+
+  const std::vector<Console::Note> &
+  Console::notes() const
+  {
+    return remarks;
+  }
+
+
+
+  void
+  Console::repeat(const std::vector<LevelRecord> &levels,
+                  const std::vector<Note>        &notes)
+  {
+    auto       next            = notes.begin();
+    const auto notes_up_to_row = [&]() {
+      for (; next != notes.end() && next->rows <= rows; ++next)
+        note(next->text);
+    };
+    notes_up_to_row();
+    for (const LevelRecord &level : levels)
+      {
+        level_complete(level);
+        notes_up_to_row();
+      }
   }
 
 

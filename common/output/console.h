@@ -3,9 +3,12 @@
 
 #include <common/output/history.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <chrono>
 #include <iosfwd>
 #include <string>
+#include <vector>
 
 namespace Friction
 {
@@ -19,7 +22,7 @@ namespace Friction
    * compared from run to run.
    *
    * A silent console prints warnings and nothing else. With several processes
-   * all but one construct theirs on a stream that leads nowhere.
+   * only that of the first one prints at all.
    */
   class Console
   {
@@ -30,13 +33,28 @@ namespace Friction
       hidden ///< no column of seconds, no progress
     };
 
+    /// A remark, and after how many rows it was made.
+    struct Note
+    {
+      unsigned int rows = 0;
+      std::string  text;
+
+      template <class Archive>
+      void
+      serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &rows &text;
+      }
+    };
+
     /**
      * @param out where to print; must outlive this object. If it is std::cout
      *            and that is a terminal, progress lines are overwritten.
      */
-    explicit Console(std::ostream &out,
-                     const Times   times  = Times::shown,
-                     const bool    silent = false);
+    explicit Console(std::ostream  &out,
+                     const Times    times        = Times::shown,
+                     const bool     silent       = false,
+                     const MPI_Comm communicator = MPI_COMM_SELF);
 
     /// The row of a level that is complete; before the first one the header.
     void level_complete(const LevelRecord &record);
@@ -55,17 +73,26 @@ namespace Friction
     /// The same for a warning or an error, which even a silent console prints.
     void warning(const std::string &text);
 
+    /// All remarks so far, whether they were printed or not.
+    const std::vector<Note> &notes() const;
+
+    /// Print what a run that is continued has printed: its rows and remarks.
+    void repeat(const std::vector<LevelRecord> &levels,
+                const std::vector<Note>        &notes);
+
   private:
     using Clock = std::chrono::steady_clock;
 
     void clear_progress();
 
     std::ostream &out;
+    const bool    first_process;
     const bool    show_times;
     const bool    silent;
     const bool    terminal;
 
-    bool              header_printed = false;
+    unsigned int      rows = 0;
+    std::vector<Note> remarks;
     std::size_t       progress_width = 0;
     Clock::time_point level_start;
     Clock::time_point last_progress;

@@ -1,14 +1,12 @@
 #include <common/compatibility.h>
 #include <common/output/fields.h>
+#include <common/parallel/collective_error.h>
 
-#include <deal.II/base/data_out_base.h>
-
-#include <deal.II/numerics/data_out.h>
 #include <deal.II/numerics/data_postprocessor.h>
 
 #include <array>
 #include <cmath>
-#include <map>
+#include <cstdint>
 #include <tuple>
 
 namespace Friction
@@ -229,11 +227,13 @@ namespace Friction
   FieldWriter<dim>::FieldWriter(const RunDirectory      &directory,
                                 const double             lambda,
                                 const double             mu,
-                                const types::boundary_id contact_boundary)
+                                const types::boundary_id contact_boundary,
+                                const FieldFormat        format)
     : directory(directory)
     , lambda(lambda)
     , mu(mu)
     , contact_boundary(contact_boundary)
+    , format(format)
   {}
 
 
@@ -286,24 +286,113 @@ namespace Friction
     data_out.build_patches(mapping);
 
     const MPI_Comm communicator = Compatibility::mpi_communicator(dof_handler);
-    const unsigned int rank = Utilities::MPI::this_mpi_process(communicator);
-    directory.write(piece_name("body", level, rank),
-                    [&](std::ostream &out) { data_out.write_vtu(out); });
+    bool           has_cells    = false;
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      has_cells = has_cells || cell->is_locally_owned();
+    if (format == FieldFormat::hdf5)
+      write_body_hdf5(level, data_out, has_cells, communicator);
+    else
+      write_body_vtu(level, data_out, communicator);
+  }
 
-    if (rank == 0)
-      {
-        directory.write(
-          file_name("body", level) + ".pvtu", [&](std::ostream &out) {
-            data_out.write_pvtu_record(
-              out,
-              piece_names(
-                "body", level, Utilities::MPI::n_mpi_processes(communicator)));
-          });
-        body_files.emplace_back(level, file_name("body", level) + ".pvtu");
-        directory.write("body.pvd", [&](std::ostream &out) {
-          DataOutBase::write_pvd_record(out, body_files);
+
+
+  template <int dim>
+  void
+  FieldWriter<dim>::write_body_vtu(const unsigned int  level,
+                                   const DataOut<dim> &data_out,
+                                   const MPI_Comm      communicator)
+  {
+    const unsigned int rank = Utilities::MPI::this_mpi_process(communicator);
+    on_all_processes(communicator, [&]() {
+      directory.write(piece_name("body", level, rank),
+                      [&](std::ostream &out) { data_out.write_vtu(out); });
+    });
+
+    // The record names the pieces, which are all there now.
+    on_first_process(communicator, [&]() {
+      directory.write(
+        file_name("body", level) + ".pvtu", [&](std::ostream &out) {
+          data_out.write_pvtu_record(
+            out,
+            piece_names(
+              "body", level, Utilities::MPI::n_mpi_processes(communicator)));
         });
+      body_files.emplace_back(level, file_name("body", level) + ".pvtu");
+      directory.write("body.pvd", [&](std::ostream &out) {
+        DataOutBase::write_pvd_record(out, body_files);
+      });
+    });
+  }
+
+
+
+  // Corners of different cells are different points, although that takes more
+  // room than to keep each vertex once: stresses jump.
+  //
+  // On a coarse mesh there may be processes without any cell, which deal.II 9.4
+  // does not want to write. So only those with cells take part, and the first
+  // of them writes the description of what they have written.
+  template <int dim>
+  void
+  FieldWriter<dim>::write_body_hdf5(const unsigned int  level,
+                                    const DataOut<dim> &data_out,
+                                    const bool          has_cells,
+                                    const MPI_Comm      communicator)
+  {
+    DataOutBase::DataOutFilter data(
+      DataOutBase::DataOutFilterFlags(/*filter_duplicate_vertices=*/false,
+                                      /*xdmf_hdf5_output=*/true));
+    data_out.write_filtered_data(data);
+
+    const unsigned int rank   = Utilities::MPI::this_mpi_process(communicator);
+    const unsigned int writer = Utilities::MPI::min(
+      has_cells ? rank : Utilities::MPI::n_mpi_processes(communicator),
+      communicator);
+    MPI_Comm those_with_cells;
+    MPI_Comm_split(
+      communicator, has_cells ? 0 : MPI_UNDEFINED, rank, &those_with_cells);
+
+    // Points and data have double precision, and there is a header.
+    std::uint64_t size = 0;
+    if (has_cells)
+      {
+        unsigned int n_numbers = 3;
+        for (unsigned int i = 0; i < data.n_data_sets(); ++i)
+          n_numbers += data.get_data_set_dim(i);
+        size = sizeof(double) * n_numbers * data.n_nodes() +
+          sizeof(unsigned int) * GeometryInfo<dim>::vertices_per_cell *
+            data.n_cells();
       }
+    size = Utilities::MPI::sum(size, communicator) + (1 << 14);
+
+    const std::string name = file_name("body", level) + ".h5";
+    XDMFEntry         entry;
+    write_together_then_rename(
+      directory.file(name),
+      communicator,
+      size,
+      [&](const std::string &temporary) {
+        if (has_cells)
+          {
+            data_out.write_hdf5_parallel(data, temporary, those_with_cells);
+            // In the description names are relative to its own place.
+            entry =
+              data_out.create_xdmf_entry(data, name, level, those_with_cells);
+          }
+      });
+    if (has_cells)
+      MPI_Comm_free(&those_with_cells);
+
+    body_entries.push_back(
+      Utilities::MPI::broadcast(communicator, entry, writer));
+    on_all_processes(communicator, [&]() {
+      if (rank == writer)
+        write_then_rename(
+          directory.file("body.xdmf"), [&](const std::string &temporary) {
+            data_out.write_xdmf_file(body_entries, temporary, MPI_COMM_SELF);
+          });
+    });
   }
 
 
@@ -321,28 +410,38 @@ namespace Friction
     const AffineConstraints<double>       &constraints,
     const std::vector<ContactRecord<dim>> &contact)
   {
-    std::map<types::global_dof_index, ContactData<dim>> nodes;
+    // Every process knows its own nodes, but its faces have corners that others
+    // own. So the data travel like displacements do: in vectors with room for
+    // dim numbers per node, as many of them as it takes.
+    constexpr unsigned int n_data    = std::tuple_size<ContactData<dim>>::value;
+    constexpr unsigned int n_vectors = (n_data + dim - 1) / dim;
+    std::array<VectorType, n_vectors> nodal_data;
+    for (VectorType &v : nodal_data)
+      v.reinit(displacement);
     for (const ContactRecord<dim> &record : contact)
-      nodes.emplace(record.dof, contact_data(record));
+      {
+        const ContactData<dim> data = contact_data(record);
+        for (unsigned int i = 0; i < n_data; ++i)
+          nodal_data[i / dim](record.dof + i % dim) = data[i];
+      }
+    for (VectorType &v : nodal_data)
+      v.update_ghost_values();
 
     // A node is a contact node, or hangs between contact nodes, or is neither
     // because its displacement is prescribed: then it shows no stress.
     const auto data_at = [&](const types::global_dof_index dof) {
-      const auto node = nodes.find(dof);
-      if (node != nodes.end())
-        return node->second;
-
       ContactData<dim> data{};
-      if (constraints.is_constrained(dof) &&
-          constraints.get_constraint_entries(dof) != nullptr)
+      const auto       add = [&](const types::global_dof_index node,
+                           const double                  weight) {
+        for (unsigned int i = 0; i < n_data; ++i)
+          data[i] += weight * nodal_data[i / dim](node + i % dim);
+      };
+      if (!constraints.is_constrained(dof))
+        add(dof, 1.);
+      else if (constraints.get_constraint_entries(dof) != nullptr)
         for (const auto &[master, weight] :
              *constraints.get_constraint_entries(dof))
-          {
-            const auto master_node = nodes.find(master);
-            if (master_node != nodes.end())
-              for (unsigned int i = 0; i < data.size(); ++i)
-                data[i] += weight * master_node->second[i];
-          }
+          add(master, weight);
       return data;
     };
 
@@ -384,29 +483,29 @@ namespace Friction
 
     const MPI_Comm communicator = Compatibility::mpi_communicator(dof_handler);
     const unsigned int rank = Utilities::MPI::this_mpi_process(communicator);
-    directory.write(piece_name("contact", level, rank), [&](std::ostream &out) {
-      DataOutBase::write_vtu(patches, names, ranges, flags, out);
+    on_all_processes(communicator, [&]() {
+      directory.write(
+        piece_name("contact", level, rank), [&](std::ostream &out) {
+          DataOutBase::write_vtu(patches, names, ranges, flags, out);
+        });
     });
 
-    if (rank == 0)
-      {
-        directory.write(
-          file_name("contact", level) + ".pvtu", [&](std::ostream &out) {
-            DataOutBase::write_pvtu_record(
-              out,
-              piece_names("contact",
-                          level,
-                          Utilities::MPI::n_mpi_processes(communicator)),
-              names,
-              ranges,
-              flags);
-          });
-        contact_files.emplace_back(level,
-                                   file_name("contact", level) + ".pvtu");
-        directory.write("contact.pvd", [&](std::ostream &out) {
-          DataOutBase::write_pvd_record(out, contact_files);
+    on_first_process(communicator, [&]() {
+      directory.write(
+        file_name("contact", level) + ".pvtu", [&](std::ostream &out) {
+          DataOutBase::write_pvtu_record(
+            out,
+            piece_names(
+              "contact", level, Utilities::MPI::n_mpi_processes(communicator)),
+            names,
+            ranges,
+            flags);
         });
-      }
+      contact_files.emplace_back(level, file_name("contact", level) + ".pvtu");
+      directory.write("contact.pvd", [&](std::ostream &out) {
+        DataOutBase::write_pvd_record(out, contact_files);
+      });
+    });
   }
 
 

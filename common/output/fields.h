@@ -1,6 +1,7 @@
 #ifndef friction_output_fields_h
 #define friction_output_fields_h
 
+#include <deal.II/base/data_out_base.h>
 #include <deal.II/base/types.h>
 
 #include <deal.II/dofs/dof_handler.h>
@@ -11,8 +12,15 @@
 #include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/lac/vector.h>
 
+#include <deal.II/numerics/data_out.h>
+
+#include <boost/serialization/map.hpp>
+#include <boost/serialization/utility.hpp>
+#include <boost/serialization/vector.hpp>
+
 #include <common/output/history.h>
 #include <common/output/run_directory.h>
+#include <common/scene/parameters.h>
 
 #include <string>
 #include <utility>
@@ -42,6 +50,13 @@ namespace Friction
    * displacement, 0 in contact) and `state` (0 open, 1 sliding, 2 sticking).
    * Nodal tractions are nodal forces over nodal measures. In 2D vectors get a
    * third component 0, as the format demands.
+   *
+   * With FieldFormat::hdf5 the body is written by all processes together, one
+   * `body-NN.h5` per level, and ParaView opens `body.xdmf`, which describes all
+   * of them. There are three differences to `.vtu`, which are due to that
+   * format of deal.II: in 2D vectors have three components there as well, cell
+   * data are repeated in the cell's corners, and numbers have double precision.
+   * The contact boundary remains as above.
    */
   template <int dim>
   class FieldWriter
@@ -53,22 +68,25 @@ namespace Friction
      * @param directory        where the files go.
      * @param lambda, mu       Lamé's constants, in the units of stress.
      * @param contact_boundary boundary id of $\Gamma_S$.
+     * @param format           of the files of the body.
      */
     FieldWriter(const RunDirectory              &directory,
                 const double                     lambda,
                 const double                     mu,
-                const dealii::types::boundary_id contact_boundary);
+                const dealii::types::boundary_id contact_boundary,
+                const FieldFormat                format = FieldFormat::vtu);
 
     /**
-     * Write the fields of a level.
+     * Write the fields of a level. A collective operation; an error of one
+     * process is that of all.
      *
      * @param displacement of @p dof_handler (FESystem of dim FE_Q(1)), with
      *                     ghost values and hanging nodes interpolated.
      * @param constraints  hanging nodes, to interpolate on the contact
      * boundary.
-     * @param contact      the contact nodes this process knows, its ghost nodes
-     *                     among them; ContactRecord::dof must be set. Without
-     *                     contact nodes no boundary is written.
+     * @param contact      the contact nodes that this process owns;
+     *                     ContactRecord::dof must be set. If no process has
+     *                     any, no boundary is written.
      * @param cell_errors  one value per active cell, or nothing.
      */
     void write_level(const unsigned int                       level,
@@ -79,12 +97,29 @@ namespace Friction
                      const std::vector<ContactRecord<dim>>   &contact,
                      const dealii::Vector<float> *cell_errors = nullptr);
 
+    /// Which files there are, for those that list them.
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &body_files &contact_files &body_entries;
+    }
+
   private:
     void write_body(const unsigned int             level,
                     const dealii::Mapping<dim>    &mapping,
                     const dealii::DoFHandler<dim> &dof_handler,
                     const VectorType              &displacement,
                     const dealii::Vector<float>   *cell_errors);
+
+    void write_body_vtu(const unsigned int          level,
+                        const dealii::DataOut<dim> &data_out,
+                        const MPI_Comm              communicator);
+
+    void write_body_hdf5(const unsigned int          level,
+                         const dealii::DataOut<dim> &data_out,
+                         const bool                  has_cells,
+                         const MPI_Comm              communicator);
 
     void
     write_contact_boundary(const unsigned int             level,
@@ -100,9 +135,11 @@ namespace Friction
     const double                     lambda;
     const double                     mu;
     const dealii::types::boundary_id contact_boundary;
+    const FieldFormat                format;
 
-    TimesAndNames body_files;
-    TimesAndNames contact_files;
+    TimesAndNames                  body_files;
+    TimesAndNames                  contact_files;
+    std::vector<dealii::XDMFEntry> body_entries;
   };
 } // namespace Friction
 

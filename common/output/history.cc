@@ -1,6 +1,6 @@
 #include <common/output/history.h>
 #include <common/output/run_directory.h>
-#include <common/scene/input_error.h>
+#include <common/parallel/collective_error.h>
 
 #include <deal.II/base/hdf5.h>
 
@@ -58,11 +58,13 @@ namespace Friction
   History<dim>::History(const std::string &file_name,
                         const std::string &scene,
                         const std::string &parameters,
-                        const std::string &version)
+                        const std::string &version,
+                        const MPI_Comm     communicator)
     : file_name(file_name)
     , scene(scene)
     , parameters(parameters)
     , version(version)
+    , communicator(communicator)
   {}
 
 
@@ -78,9 +80,13 @@ namespace Friction
     cycle_records.insert(cycle_records.end(), cycles.begin(), cycles.end());
     outer_records.insert(outer_records.end(), outer.begin(), outer.end());
     if (!contact.empty())
-      contact_levels.push_back({level.level, contact});
+      {
+        contact_levels.emplace_back();
+        contact_levels.back().level = level.level;
+        contact_levels.back().nodes = contact;
+      }
 
-    write_file();
+    on_first_process(communicator, [&]() { write_file(); });
   }
 
 

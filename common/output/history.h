@@ -1,9 +1,12 @@
 #ifndef friction_output_history_h
 #define friction_output_history_h
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
 #include <deal.II/base/types.h>
+
+#include <boost/serialization/vector.hpp>
 
 #include <string>
 #include <vector>
@@ -59,6 +62,18 @@ namespace Friction
 
     double setup_seconds = 0.;
     double solve_seconds = 0.;
+
+    /// For checkpoints, as in the structures below.
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &level &cells &dofs &contact_nodes           &sticky_nodes;
+      archive &outer_iterations &cycles &contraction       &rho_tau;
+      archive &rho_tau_contraction &energy &normal_force   &tangential_force;
+      archive &max_pressure &contact_half_width            &stick_half_width;
+      archive &estimated_error &certificate &setup_seconds &solve_seconds;
+    }
   };
 
   /**
@@ -75,6 +90,13 @@ namespace Friction
     /// Number of degrees of freedom the coarse correction leaves out.
     unsigned int truncated = 0;
     double       residual  = 0.;
+
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &level &increment &energy &damping &truncated &residual;
+    }
   };
 
   /**
@@ -87,6 +109,13 @@ namespace Friction
 
     /// Relative change of the nodal normal forces.
     double change = 0.;
+
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &level &change;
+    }
   };
 
   /**
@@ -114,6 +143,13 @@ namespace Friction
 
     /// 0 open, 1 sliding, 2 sticking.
     unsigned int state = 0;
+
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &dof &point &normal &gap &displacement &force &measure &state;
+    }
   };
 
   /**
@@ -132,8 +168,8 @@ namespace Friction
    * group there, since HDF5 through deal.II has no empty datasets; for the same
    * reason `/cycles` exists only once there was a cycle.
    *
-   * Only one process may own a History; the records of the others are gathered
-   * by the caller.
+   * With several processes the first one keeps the records and writes the file;
+   * what the others know has to be gathered by the caller.
    */
   template <int dim>
   class History
@@ -145,16 +181,19 @@ namespace Friction
      * @param scene      name of the scene.
      * @param parameters full text of the parameters of the run.
      * @param version    version of the program.
+     * @param communicator  of all processes that call add_level().
      */
     History(const std::string &file_name,
             const std::string &scene,
             const std::string &parameters,
-            const std::string &version);
+            const std::string &version,
+            const MPI_Comm     communicator = MPI_COMM_SELF);
 
     /**
      * Take over the records of a level that is complete, and write the file.
      * The levels are expected in the order in which they are computed; the
-     * cycles carry their own level.
+     * cycles carry their own level. A collective operation, an error of the
+     * first process is that of all; its records are the ones that count.
      */
     void add_level(const LevelRecord                     &level,
                    const std::vector<CycleRecord>        &cycles,
@@ -163,11 +202,26 @@ namespace Friction
 
     const std::vector<LevelRecord> &levels() const;
 
+    /// All records, without what the constructor was given.
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &level_records &cycle_records &outer_records &contact_levels;
+    }
+
   private:
     struct ContactLevel
     {
-      unsigned int                    level;
+      unsigned int                    level = 0;
       std::vector<ContactRecord<dim>> nodes;
+
+      template <class Archive>
+      void
+      serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &level &nodes;
+      }
     };
 
     void write_file() const;
@@ -181,6 +235,7 @@ namespace Friction
     std::string scene;
     std::string parameters;
     std::string version;
+    MPI_Comm    communicator;
 
     std::vector<LevelRecord>  level_records;
     std::vector<CycleRecord>  cycle_records;

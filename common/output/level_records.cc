@@ -1,8 +1,11 @@
+#include <common/compatibility.h>
 #include <common/output/level_records.h>
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/numbers.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace Friction
@@ -14,6 +17,27 @@ namespace Friction
     half_width(const double measure)
     {
       return dim == 2 ? .5 * measure : std::sqrt(measure / numbers::PI);
+    }
+
+
+
+    // The records of all processes on the first one, in an order of their own.
+    template <int dim>
+    std::vector<ContactRecord<dim>>
+    gather_sorted(const std::vector<ContactRecord<dim>> &own,
+                  const MPI_Comm                         communicator)
+    {
+      std::vector<ContactRecord<dim>> all;
+      for (const auto &part : Utilities::MPI::gather(communicator, own))
+        all.insert(all.end(), part.begin(), part.end());
+
+      std::sort(all.begin(), all.end(), [](const auto &a, const auto &b) {
+        return std::lexicographical_compare(a.point.begin_raw(),
+                                            a.point.end_raw(),
+                                            b.point.begin_raw(),
+                                            b.point.end_raw());
+      });
+      return all;
     }
   } // namespace
 
@@ -35,8 +59,6 @@ namespace Friction
     record.level        = level;
     record.cells = dof_handler.get_triangulation().n_global_active_cells();
     record.dofs  = dof_handler.n_dofs();
-    record.contact_nodes       = state.n_contact();
-    record.sticky_nodes        = state.n_sticking();
     record.outer_iterations    = report.outer_iterations;
     record.cycles              = report.cycles.size();
     record.contraction         = report.contraction;
@@ -45,7 +67,13 @@ namespace Friction
     record.rho_tau_contraction = report.rho_tau_contraction();
     record.certificate         = report.certificate.largest();
 
+    const MPI_Comm communicator = Compatibility::mpi_communicator(dof_handler);
+    record.contact_nodes = Utilities::MPI::sum(state.n_contact(), communicator);
+    record.sticky_nodes = Utilities::MPI::sum(state.n_sticking(), communicator);
+
+    // What is summed up over the nodes, here of this process.
     Tensor<1, dim> tangential_force;
+    double         normal_force = 0, max_pressure = 0;
     double         contact_measure = 0, stick_measure = 0;
     for (unsigned int p = 0; p < contact_boundary.size(); ++p)
       {
@@ -60,23 +88,30 @@ namespace Friction
           row.displacement[d] = displacement.local_element(dim * node.node + d);
         row.force = contact_force(node, report.residual);
         row.state = !state.in_contact(p) ? 0 : state.sticks(p) ? 2 : 1;
-        records.contact.push_back(row);
+        records.own_contact.push_back(row);
 
-        const double normal_force = -row.force * row.normal;
-        tangential_force += row.force + normal_force * row.normal;
+        const double pressing = -row.force * row.normal;
+        tangential_force += row.force + pressing * row.normal;
         if (row.state > 0)
           {
-            record.normal_force += normal_force;
-            record.max_pressure =
-              std::max(record.max_pressure, normal_force / row.measure);
+            normal_force += pressing;
+            max_pressure = std::max(max_pressure, pressing / row.measure);
             contact_measure += row.measure;
             if (row.state == 2)
               stick_measure += row.measure;
           }
       }
-    record.tangential_force   = tangential_force.norm();
-    record.contact_half_width = half_width<dim>(contact_measure);
-    record.stick_half_width   = half_width<dim>(stick_measure);
+    records.contact = gather_sorted(records.own_contact, communicator);
+
+    // And now of all.
+    record.normal_force = Utilities::MPI::sum(normal_force, communicator);
+    record.max_pressure = Utilities::MPI::max(max_pressure, communicator);
+    record.tangential_force =
+      Utilities::MPI::sum(tangential_force, communicator).norm();
+    record.contact_half_width =
+      half_width<dim>(Utilities::MPI::sum(contact_measure, communicator));
+    record.stick_half_width =
+      half_width<dim>(Utilities::MPI::sum(stick_measure, communicator));
 
     for (const CycleInfo &info : report.cycles)
       {

@@ -12,10 +12,17 @@ namespace Friction
   template <int dim>
   struct LevelRecords
   {
-    LevelRecord                     level;
-    std::vector<CycleRecord>        cycles;
+    LevelRecord              level;
+    std::vector<CycleRecord> cycles;
+    std::vector<OuterRecord> outer;
+
+    /// Those of all contact nodes, on the first process; empty on the others.
+    /// Sorted by their points, so that neither the numbering of nodes nor the
+    /// number of processes matters.
     std::vector<ContactRecord<dim>> contact;
-    std::vector<OuterRecord>        outer;
+
+    /// Those of the contact nodes that this process owns.
+    std::vector<ContactRecord<dim>> own_contact;
   };
 
   /**
@@ -37,6 +44,9 @@ namespace Friction
    * The number of cycles is that of all outer iterations; there is one of these
    * unless Algorithm 2 is used. The estimated error and the seconds are left to
    * the caller.
+   *
+   * All of it is about the contact nodes of all processes. A collective
+   * operation; every process gets the same numbers.
    *
    * @param report  of the solution @p displacement, @p state.
    */

@@ -1,5 +1,6 @@
 #include <common/output/run_directory.h>
-#include <common/scene/input_error.h>
+#include <common/parallel/collective_error.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -41,14 +42,24 @@ namespace Friction
         return temporary.string();
       }
 
+      // Not before the contents are on the disk: otherwise a power failure
+      // might leave the final name with nothing behind it.
       void
       rename()
       {
+        flush_to_disk(temporary.string());
         std::error_code error;
         std::filesystem::rename(temporary, final_path, error);
         if (error)
           throw InputError("The file '" + final_path.string() +
                            "' cannot be written: " + error.message() + ".");
+        renamed = true;
+      }
+
+      // Somebody else renames it, or removes it.
+      void
+      leave_alone()
+      {
         renamed = true;
       }
 
@@ -117,8 +128,81 @@ namespace Friction
 
 
 
-  RunDirectory::RunDirectory(const std::string &path)
+  void
+  flush_to_disk(const std::string &path)
+  {
+    errno               = 0;
+    const int  file     = ::open(path.c_str(), O_RDONLY);
+    const bool complete = file >= 0 && ::fsync(file) == 0;
+    // Some file systems cannot flush a directory, and need not.
+    const bool        pointless = file >= 0 && errno == EINVAL;
+    const std::string why       = reason();
+    if (file >= 0)
+      ::close(file);
+    if (!complete && !pointless)
+      throw InputError("The file '" + path +
+                       "' cannot be written completely: " + why + ".");
+  }
+
+
+
+  void
+  write_together_then_rename(
+    const std::string                                            &final_name,
+    const MPI_Comm                                                communicator,
+    const std::uint64_t                                           size,
+    const std::function<void(const std::string &temporary_name)> &write_to)
+  {
+    TemporaryFile file(final_name);
+
+    // Only the first process removes and renames.
+    const bool first =
+      dealii::Utilities::MPI::this_mpi_process(communicator) == 0;
+    if (!first)
+      file.leave_alone();
+
+    // What the file system does not know, quotas for example, is found out too
+    // late; but it is better to know about full disks than about nothing.
+    on_first_process(communicator, [&]() {
+      std::error_code error;
+      const auto      space = std::filesystem::space(
+        std::filesystem::path(file.name()).parent_path(), error);
+      if (!error && space.available < size)
+        throw InputError("The file '" + final_name +
+                         "' cannot be written: there is not enough space.");
+    });
+
+    std::optional<std::string> error;
+    try
+      {
+        write_to(file.name());
+      }
+    catch (const std::exception &)
+      {
+        error = "The file '" + final_name +
+          "' cannot be written completely: is the disk full?";
+      }
+    throw_if_any(communicator, error);
+    on_first_process(communicator, [&]() { file.rename(); });
+  }
+
+
+
+  RunDirectory::RunDirectory(const std::string &path,
+                             const MPI_Comm     communicator)
     : directory(path.empty() ? "." : path)
+  {
+    on_first_process(communicator, [&]() { create(); });
+    on_all_processes(communicator, [&]() {
+      create();
+      try_to_write(dealii::Utilities::MPI::this_mpi_process(communicator));
+    });
+  }
+
+
+
+  void
+  RunDirectory::create() const
   {
     std::error_code error;
     std::filesystem::create_directories(directory, error);
@@ -127,18 +211,25 @@ namespace Friction
     if (error)
       throw InputError("The output directory '" + directory +
                        "' cannot be created: " + error.message() + ".");
+  }
 
-    // Permissions do not tell everything (read-only file systems, quotas), so
-    // we try. The name is our own, also if several processes try at once.
+
+
+  // Permissions do not tell everything (read-only file systems, quotas), so we
+  // try. The name is our own, also if several processes try at once.
+  void
+  RunDirectory::try_to_write(const unsigned int rank) const
+  {
     const std::filesystem::path probe = std::filesystem::path(directory) /
-      (".writable-" + std::to_string(::getpid()));
+      (".writable-" + std::to_string(::getpid()) + "-" + std::to_string(rank));
     errno = 0;
     std::ofstream out(probe);
     out << "This file shows that the directory can be written to.\n";
     out.close();
     const bool        writable = !out.fail();
     const std::string why      = reason();
-    std::filesystem::remove(probe, error);
+    std::error_code   ignored;
+    std::filesystem::remove(probe, ignored);
     if (!writable)
       throw InputError("The output directory '" + directory +
                        "' cannot be written to: " + why + ".");

@@ -1,6 +1,9 @@
 #ifndef friction_output_run_directory_h
 #define friction_output_run_directory_h
 
+#include <deal.II/base/mpi.h>
+
+#include <cstdint>
 #include <functional>
 #include <ostream>
 #include <string>
@@ -16,6 +19,7 @@ namespace Friction
    * @p write_to gets the temporary name, in the same directory as
    * @p final_name and with the same ending. If it throws, or if the file cannot
    * be renamed, the temporary file is removed and the exception passed on.
+   * Before the file gets its name, its contents are on the disk.
    */
   void write_then_rename(
     const std::string                                            &final_name,
@@ -31,6 +35,24 @@ namespace Friction
                            const std::function<void(std::ostream &)> &write_to);
 
   /**
+   * The same for one file that all processes write together: @p write_to is
+   * called by all of them with the same temporary name, the first one renames.
+   * Whatever goes wrong is an InputError on all of them. That the disk is full
+   * is asked for before, since it would be found out in the middle of
+   * collective operations.
+   *
+   * @param size  in bytes, about, of the whole file.
+   */
+  void write_together_then_rename(
+    const std::string                                            &final_name,
+    const MPI_Comm                                                communicator,
+    const std::uint64_t                                           size,
+    const std::function<void(const std::string &temporary_name)> &write_to);
+
+  /// Wait until a file, or a directory, is on the disk. Throws InputError.
+  void flush_to_disk(const std::string &path);
+
+  /**
    * The directory a run writes into. An object of this class is the proof that
    * the directory exists and can be written to, so a run learns this in its
    * first second and not after its last level.
@@ -41,9 +63,12 @@ namespace Friction
     /**
      * Create the directory and its parents where they are missing. Throws an
      * InputError of one sentence if this is impossible, or if no file can be
-     * written there.
+     * written there. With several processes, the first one creates it and all
+     * try, for they may run on different machines; an error of one is that of
+     * all.
      */
-    explicit RunDirectory(const std::string &path);
+    explicit RunDirectory(const std::string &path,
+                          const MPI_Comm     communicator = MPI_COMM_SELF);
 
     /// The path as it was given.
     const std::string &path() const;
@@ -56,6 +81,10 @@ namespace Friction
                const std::function<void(std::ostream &)> &write_to) const;
 
   private:
+    void create() const;
+
+    void try_to_write(const unsigned int rank) const;
+
     std::string directory;
   };
 } // namespace Friction

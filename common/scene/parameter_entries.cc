@@ -354,6 +354,22 @@ namespace Friction
        "Where results go; it is created."},
       {"Output", "Fields", "true", flag, "Whether to write fields."},
       {"Output",
+       "Format",
+       "vtu",
+       choice("vtu|hdf5"),
+       "Files of the fields. 'vtu': one per process and level, and records "
+       "(.pvtu, .pvd) that list them. 'hdf5': for the body one .h5 per level, "
+       "written by all processes together, and body.xdmf; the contact boundary "
+       "is small and stays in .vtu files."},
+      {"Output",
+       "Checkpoint",
+       "false",
+       flag,
+       "Whether to write a checkpoint after each level but the last one, from "
+       "which --restart continues. Only the latest is kept, also at the end of "
+       "the run: continued with more levels, a run solves its last level once "
+       "more and goes on."},
+      {"Output",
        "Times",
        "true",
        flag,

@@ -8,6 +8,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <fstream>
@@ -692,16 +693,47 @@ namespace Friction
       auto             &output    = parameters.output;
       output.directory            = values.get("Output/Directory");
       output.fields               = values.flag("Output/Fields");
-      output.times                = values.flag("Output/Times");
-      output.verbosity            = (verbosity == "quiet" ? Verbosity::quiet
-                                       : verbosity == "levels" ? Verbosity::levels
-                                                               : Verbosity::cycles);
+      output.format =
+        (values.get("Output/Format") == "vtu" ? FieldFormat::vtu
+                                              : FieldFormat::hdf5);
+      output.checkpoint = values.flag("Output/Checkpoint");
+      output.times      = values.flag("Output/Times");
+      output.verbosity  = (verbosity == "quiet"      ? Verbosity::quiet
+                             : verbosity == "levels" ? Verbosity::levels
+                                                     : Verbosity::cycles);
       if (output.directory.empty())
         throw InputError(values.subject("Output/Directory") +
                          " is empty; name a directory.");
     }
 
     return parameters;
+  }
+
+
+
+  std::string
+  first_difference(const std::string &text, const std::string &other)
+  {
+    std::array<ParameterHandler, 2> handlers;
+    declare_parameters(handlers[0]);
+    declare_parameters(handlers[1]);
+    handlers[0].parse_input_from_string(text);
+    handlers[1].parse_input_from_string(other);
+    const auto value = [&](const unsigned int i, const ParameterEntry &entry) {
+      handlers[i].enter_subsection(entry.section);
+      const std::string value = handlers[i].get(entry.name);
+      handlers[i].leave_subsection();
+      return value;
+    };
+
+    for (const ParameterEntry &entry : parameter_entries())
+      if (entry.section != "Solver" && entry.section != "Output" &&
+          entry.path() != "Refinement/Levels" &&
+          entry.path() != "Refinement/Maximum dofs" &&
+          entry.path() != "Refinement/Estimate error" &&
+          value(0, entry) != value(1, entry))
+        return entry.path();
+    return "";
   }
 
 

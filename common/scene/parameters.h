@@ -102,6 +102,12 @@ namespace Friction
     cycles  ///< and progress inside the levels
   };
 
+  enum class FieldFormat
+  {
+    vtu, ///< one file per process, with records that list them
+    hdf5 ///< one file for all, with a description in XDMF
+  };
+
   /**
    * One entry of a list of conditions as written in a scene file: a key
    * (a boundary id, or a point), and one expression per component, where
@@ -178,9 +184,11 @@ namespace Friction
     struct Output
     {
       std::string directory;
-      bool        fields    = true;
-      bool        times     = true; ///< print what depends on the clock
-      Verbosity   verbosity = Verbosity::cycles;
+      bool        fields     = true;
+      FieldFormat format     = FieldFormat::vtu;
+      bool        checkpoint = false; ///< one after each level
+      bool        times      = true;  ///< print what depends on the clock
+      Verbosity   verbosity  = Verbosity::cycles;
     };
 
     std::string name; ///< stem of the scene file's name
@@ -205,6 +213,18 @@ namespace Friction
    */
   Parameters read_parameters(const std::string              &scene_file,
                              const std::vector<std::string> &overrides = {});
+
+  /**
+   * Compares the parameters of two runs, each given as in Parameters::text, one
+   * of which is to continue the other.
+   *
+   * @return the first entry that would make it another problem or another
+   *   sequence of meshes, as <tt>Section/Entry</tt>; empty if there is none.
+   * How far to go (number of levels, limit on unknowns), how to solve and what
+   * to write or print may differ.
+   */
+  std::string first_difference(const std::string &text,
+                               const std::string &other);
 
   /**
    * Print all entries with their defaults and documentation, in the format of

@@ -1,3 +1,5 @@
+#include <common/compatibility.h>
+#include <common/parallel/collective_error.h>
 #include <common/scene/geometries.h>
 #include <common/scene/parse_function.h>
 #include <common/scene/scene.h>
@@ -10,6 +12,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 namespace Friction
 {
@@ -313,13 +317,27 @@ namespace Friction
   void
   Scene<dim>::make_coarse_mesh(Triangulation<dim> &triangulation) const
   {
-    const std::string here = "scene '" + parameters.name + "': ";
-
     // The mesh is made in a triangulation that lives on one processor, since
-    // vertices can be moved freely there, and is then copied.
+    // vertices can be moved freely there, and is then copied. Each process
+    // makes its own; a mesh file that one of them cannot read is an error of
+    // all.
     // The copy at the end takes over this mesh's policy of refinement as well,
     // which therefore has to be the one that the given triangulation has.
     Triangulation<dim> mesh(triangulation.get_mesh_smoothing());
+    on_all_processes(Compatibility::mpi_communicator(triangulation),
+                     [&]() { make_serial_mesh(mesh); });
+
+    triangulation.copy_triangulation(mesh);
+    set_manifolds(parameters.scene, triangulation);
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::make_serial_mesh(Triangulation<dim> &mesh) const
+  {
+    const std::string here = "scene '" + parameters.name + "': ";
     make_geometry(parameters.scene, here, mesh);
 
     if (parameters.scene.rotation_angle != 0.)
@@ -357,9 +375,6 @@ namespace Friction
                            "'Boundary conditions/Pinned points' names a point "
                            "that is no vertex of the coarse mesh; correct it.");
       }
-
-    triangulation.copy_triangulation(mesh);
-    set_manifolds(parameters.scene, triangulation);
   }
 
 
@@ -395,6 +410,23 @@ namespace Friction
     return friction_law() == FrictionLaw::coulomb
       ? parameters.contact.friction_coefficient
       : 0.;
+  }
+
+
+
+  template <int dim>
+  std::string
+  Scene<dim>::warning() const
+  {
+    const double bound = eck_bound(dim, material().poisson_ratio());
+    if (friction_coefficient() <= bound)
+      return "";
+    std::ostringstream text;
+    text << "Warning: the coefficient of friction " << friction_coefficient()
+         << " is above Eck's bound " << std::setprecision(3) << bound
+         << " for this Poisson ratio, below which a solution is known to "
+            "exist; there may be none, or several.";
+    return text.str();
   }
 
 

@@ -13,6 +13,7 @@
 #include <deal.II/grid/tria.h>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace Friction
@@ -174,7 +175,16 @@ namespace Friction
       return bound;
     }
 
+    /**
+     * What should be said before anybody believes a solution, or nothing: that
+     * the coefficient of friction is above Eck's bound.
+     */
+    std::string warning() const;
+
   private:
+    /// The coarse mesh on one process, checked.
+    void make_serial_mesh(Triangulation<dim> &mesh) const;
+
     Parameters                           parameters;
     Tensor<2, dim>                       rotation;
     Obstacle<dim>                        the_obstacle;

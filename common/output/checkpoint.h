@@ -1,0 +1,102 @@
+#ifndef friction_output_checkpoint_h
+#define friction_output_checkpoint_h
+
+#include <deal.II/base/mpi.h>
+
+#include <deal.II/distributed/tria.h>
+
+#include <deal.II/dofs/dof_handler.h>
+
+#include <deal.II/lac/la_parallel_vector.h>
+
+#include <common/output/run_directory.h>
+
+#include <string>
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * The checkpoints of a run, each a directory `checkpoint-NN` in that of the
+   * run. It holds what is needed to solve level NN and to go on from there:
+   * - `mesh` and the files beside it that deal.II makes: the mesh of that
+   *   level, and the vectors that were interpolated to it;
+   * - `record`: whatever else the run wants to remember, as a sequence of
+   *   bytes.
+   *
+   * A checkpoint is complete or absent. It is written as `checkpoint.part`, and
+   * gets its name when all of it is on the disk. Only then its predecessors are
+   * removed, and they lose their names before they lose any of their files. A
+   * run that is killed may leave directories with `.part` in their names; they
+   * are never read, and the next checkpoint removes them.
+   *
+   * Vectors are stored cell by cell, and p4est cuts the mesh anew when it is
+   * read. Therefore the number of processes may be another one then.
+   *
+   * All functions are collective operations, and an error of one process is
+   * that of all.
+   */
+  class Checkpoints
+  {
+  public:
+    Checkpoints(const RunDirectory &directory, const MPI_Comm communicator);
+
+    /**
+     * Write a checkpoint, and remove all others.
+     *
+     * @param level    the level that is to be solved next.
+     * @param record   that of the first process is written.
+     * @param vectors  on the mesh of that level.
+     */
+    template <int dim>
+    void save(
+      const unsigned int                                       level,
+      const std::vector<char>                                 &record,
+      const dealii::parallel::distributed::Triangulation<dim> &triangulation,
+      const dealii::DoFHandler<dim>                           &dof_handler,
+      const std::vector<const dealii::LinearAlgebra::distributed::Vector<double>
+                          *>                                  &vectors) const;
+
+    /**
+     * The level of the last checkpoint that is complete. Throws an InputError
+     * if there is none.
+     */
+    unsigned int last_level() const;
+
+    /// The record of a checkpoint, on all processes.
+    std::vector<char> record(const unsigned int level) const;
+
+    /**
+     * Refine a coarse mesh, which must be the one that the mesh was made from.
+     */
+    template <int dim>
+    void load_mesh(
+      const unsigned int                                 level,
+      dealii::parallel::distributed::Triangulation<dim> &triangulation) const;
+
+    /**
+     * Read the vectors, as many as were saved. To be called once after
+     * load_mesh(), when degrees of freedom have been distributed and the
+     * vectors have been given their sizes. They have no ghost values then.
+     */
+    template <int dim>
+    static void load_vectors(
+      const dealii::DoFHandler<dim> &dof_handler,
+      std::vector<dealii::LinearAlgebra::distributed::Vector<double> *>
+        vectors);
+
+    /// Remove all checkpoints, and what is left of unfinished ones.
+    void remove_all() const;
+
+  private:
+    std::string path(const unsigned int level) const;
+
+    /// To be called by the first process only.
+    void remove_all_but(const std::string &kept) const;
+
+    const RunDirectory directory;
+    const MPI_Comm     communicator;
+  };
+} // namespace Friction
+
+#endif

@@ -1,0 +1,239 @@
+#include <common/output/run_output.h>
+
+#include <boost/archive/binary_iarchive.hpp>
+#include <boost/archive/binary_oarchive.hpp>
+
+#include <cmath>
+#include <sstream>
+
+namespace Friction
+{
+  namespace
+  {
+    // To be increased whenever what is in a checkpoint changes.
+    constexpr unsigned int checkpoint_format = 1;
+
+
+
+    // What a checkpoint has to agree with.
+    struct Header
+    {
+      unsigned int format     = checkpoint_format;
+      unsigned int dimension  = 0;
+      double       mesh       = 0.;
+      std::string  parameters = {};
+
+      template <class Archive>
+      void
+      serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &format &dimension &mesh &parameters;
+      }
+    };
+  } // namespace
+
+
+
+  template <int dim>
+  RunOutput<dim>::RunOutput(const Parameters  &parameters,
+                            const Scene<dim>  &scene,
+                            std::ostream      &out,
+                            const std::string &version,
+                            const MPI_Comm     communicator)
+    : parameters(parameters)
+    , directory(parameters.output.directory, communicator)
+    , the_console(out,
+                  parameters.output.times ? Console::Times::shown
+                                          : Console::Times::hidden,
+                  parameters.output.verbosity == Verbosity::quiet,
+                  communicator)
+    , history(directory.file("history.h5"),
+              parameters.name,
+              parameters.text,
+              version,
+              communicator)
+    , fields(directory,
+             scene.material().lambda(),
+             scene.material().mu(),
+             scene.contact_boundary_id(),
+             parameters.output.format)
+    , checkpoints(directory, communicator)
+  {}
+
+
+
+  template <int dim>
+  Console &
+  RunOutput<dim>::console()
+  {
+    return the_console;
+  }
+
+
+
+  template <int dim>
+  void
+  RunOutput<dim>::add_level(const LevelRecords<dim>         &records,
+                            const Mapping<dim>              &mapping,
+                            const DoFHandler<dim>           &dof_handler,
+                            const AffineConstraints<double> &hanging_nodes,
+                            const VectorType                &displacement,
+                            const Vector<float>             &cell_errors)
+  {
+    // These results take the place of older ones, to which the checkpoints
+    // belong.
+    if (records.level.level == 0 && !restarted)
+      checkpoints.remove_all();
+
+    the_console.level_complete(records.level);
+    history.add_level(
+      records.level, records.cycles, records.contact, records.outer);
+    if (parameters.output.fields)
+      fields.write_level(records.level.level,
+                         mapping,
+                         dof_handler,
+                         displacement,
+                         hanging_nodes,
+                         records.own_contact,
+                         cell_errors.size() > 0 ? &cell_errors : nullptr);
+  }
+
+
+
+  template <int dim>
+  void
+  RunOutput<dim>::add_exact_error(const ExactError &error,
+                                  const bool        with_order)
+  {
+    the_console.note(error.describe(with_order ? last_exact_error : 0.));
+    last_exact_error = error.energy;
+  }
+
+
+
+  template <int dim>
+  void
+  RunOutput<dim>::add_failure(const unsigned int  level,
+                              const SolverReport &report)
+  {
+    the_console.note("No convergence on level " + std::to_string(level) +
+                     " within " + std::to_string(report.cycles.size()) +
+                     " cycles. Certificate: " + report.certificate.describe() +
+                     ".");
+  }
+
+
+
+  // The coarse mesh is known to all processes. The numbers of its vertices are
+  // part of the sum, which two different meshes will hardly share.
+  template <int dim>
+  double
+  RunOutput<dim>::fingerprint(const Triangulation &triangulation)
+  {
+    double sum = 0;
+    for (const auto &cell : triangulation.cell_iterators_on_level(0))
+      for (const unsigned int v : cell->vertex_indices())
+        for (unsigned int d = 0; d < dim; ++d)
+          sum += (1. + d + dim * (v + 8. * cell->index())) *
+            std::abs(cell->vertex(v)[d]);
+    return sum;
+  }
+
+
+
+  template <int dim>
+  void
+  RunOutput<dim>::save_checkpoint(
+    const unsigned int                     next_level,
+    const Triangulation                   &triangulation,
+    const DoFHandler<dim>                 &dof_handler,
+    const std::vector<const VectorType *> &vectors) const
+  {
+    if (!parameters.output.checkpoint)
+      return;
+
+    Header header;
+    header.dimension                       = dim;
+    header.mesh                            = fingerprint(triangulation);
+    header.parameters                      = parameters.text;
+    const std::vector<Console::Note> notes = the_console.notes();
+
+    std::ostringstream record;
+    {
+      boost::archive::binary_oarchive archive(record);
+      archive << header << history << fields << notes << last_exact_error;
+    }
+    const std::string bytes = record.str();
+    checkpoints.save(next_level,
+                     std::vector<char>(bytes.begin(), bytes.end()),
+                     triangulation,
+                     dof_handler,
+                     vectors);
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  RunOutput<dim>::load_checkpoint(Triangulation &triangulation)
+  {
+    const unsigned int      level = checkpoints.last_level();
+    const std::vector<char> bytes = checkpoints.record(level);
+
+    // All processes read the same record, and find the same faults in it.
+    const std::string here = "The checkpoint of level " +
+      std::to_string(level) + " in '" + directory.path() + "' ";
+    std::vector<Console::Note> notes;
+    std::string                difference;
+    Header                     header;
+    std::istringstream         record(std::string(bytes.begin(), bytes.end()));
+    try
+      {
+        boost::archive::binary_iarchive archive(record);
+        archive >> header;
+        if (header.format == checkpoint_format && header.dimension == dim)
+          {
+            archive >> history >> fields >> notes >> last_exact_error;
+            difference = first_difference(header.parameters, parameters.text);
+          }
+      }
+    catch (const std::exception &)
+      {
+        header.format = checkpoint_format + 1;
+      }
+    if (header.format != checkpoint_format)
+      throw InputError(here +
+                       "cannot be read; it may be damaged, or that of "
+                       "another version of the program.");
+    if (header.dimension != dim)
+      throw InputError(here + "is that of the program for " +
+                       std::to_string(header.dimension) + " dimensions.");
+    if (!difference.empty())
+      throw InputError(here + "belongs to another problem: '" + difference +
+                       "' has changed.");
+    const double mesh = fingerprint(triangulation);
+    if (std::abs(header.mesh - mesh) > 1e-10 * mesh)
+      throw InputError(here + "belongs to another coarse mesh.");
+
+    // Would this run have come to that level at all?
+    const unsigned int dofs =
+      history.levels().empty() ? 0 : history.levels().back().dofs;
+    if (level > parameters.refinement.levels)
+      throw InputError(here + "is further than 'Refinement/Levels=" +
+                       std::to_string(parameters.refinement.levels) + "'.");
+    if (dofs >= parameters.refinement.maximum_dofs)
+      throw InputError(here + "is further than 'Refinement/Maximum dofs=" +
+                       std::to_string(parameters.refinement.maximum_dofs) +
+                       "'.");
+
+    checkpoints.load_mesh(level, triangulation);
+    restarted = true;
+    the_console.repeat(history.levels(), notes);
+    return level;
+  }
+
+
+
+  template class RunOutput<2>;
+  template class RunOutput<3>;
+} // namespace Friction

@@ -1,0 +1,112 @@
+#ifndef friction_output_run_output_h
+#define friction_output_run_output_h
+
+#include <common/estimate/exact_error.h>
+#include <common/output/checkpoint.h>
+#include <common/output/console.h>
+#include <common/output/fields.h>
+#include <common/output/history.h>
+#include <common/output/level_records.h>
+#include <common/output/run_directory.h>
+#include <common/scene/scene.h>
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * All that a run puts out: the table on the console, `history.h5`, the fields
+   * for ParaView, and checkpoints. Which of these are wanted, the parameters
+   * say.
+   *
+   * Unless stated otherwise, functions are collective operations, and an error
+   * of one process is that of all.
+   */
+  template <int dim>
+  class RunOutput
+  {
+  public:
+    using Triangulation = parallel::distributed::Triangulation<dim>;
+
+    /**
+     * Creates the output directory, so that a run which cannot write anything
+     * fails in its first second and not after its last level.
+     *
+     * @param out      where the console of the first process prints.
+     * @param version  of the program.
+     */
+    RunOutput(const Parameters  &parameters,
+              const Scene<dim>  &scene,
+              std::ostream      &out,
+              const std::string &version,
+              const MPI_Comm     communicator);
+
+    /// For remarks and progress, by any process; only those of the first count.
+    Console &console();
+
+    /**
+     * Put out what is known at the end of a level. Checkpoints that a previous
+     * run has left in the directory are removed then, unless this one has been
+     * started from them.
+     *
+     * @param cell_errors  estimated errors of the active cells, or empty.
+     */
+    void add_level(const LevelRecords<dim>         &records,
+                   const Mapping<dim>              &mapping,
+                   const DoFHandler<dim>           &dof_handler,
+                   const AffineConstraints<double> &hanging_nodes,
+                   const VectorType                &displacement,
+                   const Vector<float>             &cell_errors);
+
+    /**
+     * A remark on the error of a solution that is known.
+     *
+     * @param with_order  compare it with that of the level before.
+     */
+    void add_exact_error(const ExactError &error, const bool with_order);
+
+    /// A remark on a level that could not be solved.
+    void add_failure(const unsigned int level, const SolverReport &report);
+
+    /**
+     * Write a checkpoint, if the parameters want any.
+     *
+     * @param next_level  the level that the mesh has been refined for.
+     * @param vectors     on that mesh.
+     */
+    void save_checkpoint(const unsigned int                     next_level,
+                         const Triangulation                   &triangulation,
+                         const DoFHandler<dim>                 &dof_handler,
+                         const std::vector<const VectorType *> &vectors) const;
+
+    /**
+     * Start from the last checkpoint: refines the coarse mesh as it was,
+     * and prints again what the run has printed until then. Throws an
+     * InputError if there is none, if it belongs to another problem, or if the
+     * run has already gone as far as the parameters want it to. The vectors are
+     * read with Checkpoints::load_vectors().
+     *
+     * @return the level to go on with.
+     */
+    unsigned int load_checkpoint(Triangulation &triangulation);
+
+  private:
+    /// A number that changes if the coarse mesh does.
+    static double fingerprint(const Triangulation &triangulation);
+
+    const Parameters parameters;
+
+    RunDirectory     directory;
+    Console          the_console;
+    History<dim>     history;
+    FieldWriter<dim> fields;
+    Checkpoints      checkpoints;
+
+    double last_exact_error = 0.;
+    bool   restarted        = false;
+  };
+} // namespace Friction
+
+#endif

@@ -1,0 +1,135 @@
+#include <common/parallel/collective_error.h>
+#include <common/program/command_line.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+
+#include <exception>
+#include <iostream>
+#include <vector>
+
+namespace Friction
+{
+  namespace
+  {
+    std::string
+    usage(const std::string &program,
+          const std::string &dimensions,
+          const std::string &example)
+    {
+      return "Usage: " + program +
+        " SCENE.prm [--restart] [Section/Entry=value ...]\n"
+        "       " +
+        program +
+        " --parameters   print all entries with defaults\n"
+        "       " +
+        program +
+        " --help         print this\n"
+        "\n"
+        "Solves a contact problem with friction in " +
+        dimensions +
+        " dimensions by monotone\n"
+        "multigrid. SCENE.prm describes body, obstacle, loads and solver; "
+        "entries\n"
+        "given on the command line take precedence over the file, for example\n"
+        "\n"
+        "  " +
+        program + " " + example +
+        "\n"
+        "\n"
+        "On several processors: mpirun -np N " +
+        program +
+        " SCENE.prm ...\n"
+        "\n"
+        "The results go to the directory given by Output/Directory: history.h5 "
+        "and\n"
+        "fields for ParaView. With Output/Checkpoint=true each level leaves a "
+        "checkpoint\n"
+        "there, from which --restart continues a run that was interrupted, or "
+        "is to get\n"
+        "more levels. Exit status: 0 solved, 1 not converged, 2 bad input, 3 "
+        "an error of\n"
+        "the program.\n";
+    }
+  } // namespace
+
+
+
+  int
+  run_program(int                argc,
+              char             **argv,
+              const std::string &program,
+              const std::string &dimensions,
+              const std::string &example,
+              const std::function<bool(const Parameters &, const Start)> &run)
+  {
+    using namespace dealii;
+
+    // Everything happens while MPI is running, messages included: they are out
+    // before the first process ends with a status other than 0, upon which
+    // mpirun may end the others.
+    Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+    const bool speaks = Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+
+    // An unexpected exception may be that of a single process. We do not know
+    // what the others are waiting for; only MPI can end them.
+    const auto unexpected = [&](const std::string &what) {
+      std::cerr << program << ": unexpected error: " << what << std::endl;
+      if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+        MPI_Abort(MPI_COMM_WORLD, 3);
+      return 3;
+    };
+
+    try
+      {
+        std::vector<std::string> arguments(argv + 1, argv + argc);
+        if (arguments.empty() || arguments[0] == "--help" ||
+            arguments[0] == "-h")
+          {
+            if (speaks)
+              (arguments.empty() ? std::cerr : std::cout)
+                << usage(program, dimensions, example) << std::flush;
+            return arguments.empty() ? 2 : 0;
+          }
+        if (arguments[0] == "--parameters")
+          {
+            if (speaks)
+              print_default_parameters(std::cout);
+            return 0;
+          }
+
+        // This one may stand anywhere, for it is easily appended to the command
+        // line of the run that was interrupted.
+        const auto restart =
+          std::remove(arguments.begin(), arguments.end(), "--restart");
+        const Start start =
+          restart == arguments.end() ? Start::anew : Start::from_checkpoint;
+        arguments.erase(restart, arguments.end());
+        if (arguments.empty())
+          throw InputError("--restart needs the scene file of the run that is "
+                           "to be continued.");
+
+        // The scene is read and checked before anything is created.
+        const Parameters parameters = on_all_processes(MPI_COMM_WORLD, [&]() {
+          return read_parameters(arguments[0],
+                                 {arguments.begin() + 1, arguments.end()});
+        });
+        return run(parameters, start) ? 0 : 1;
+      }
+    catch (const InputError &error)
+      {
+        if (speaks)
+          std::cerr << program << ": " << error.what() << std::endl;
+        return 2;
+      }
+    catch (const std::exception &error)
+      {
+        return unexpected(error.what());
+      }
+    catch (...)
+      {
+        return unexpected("of a kind that says nothing about itself");
+      }
+  }
+} // namespace Friction

@@ -1,0 +1,49 @@
+#ifndef friction_program_command_line_h
+#define friction_program_command_line_h
+
+#include <common/scene/parameters.h>
+
+#include <functional>
+#include <string>
+
+namespace Friction
+{
+  /// Where a run begins.
+  enum class Start
+  {
+    anew,           ///< with the coarse mesh
+    from_checkpoint ///< with the last one in the output directory
+  };
+
+  /**
+   * What every step program does around its work: starts MPI, answers `--help`
+   * and `--parameters`, reads the scene file with `--restart` and the overrides
+   * that follow it, and turns errors into one sentence without a stack trace.
+   *
+   * The return value is the exit status, which is part of the result:
+   * - 0: all levels have been solved and certified;
+   * - 1: some level has not; its results are there to be looked at, but not to
+   *   be believed;
+   * - 2: the input was at fault;
+   * - 3: what should never happen.
+   *
+   * With several processes only the first one prints. An InputError has to
+   * reach all of them, see on_all_processes(). Any other exception may be that
+   * of one process while the others wait for its data, so that it ends all of
+   * them at once, with the same status 3.
+   *
+   * @param program     the name of the program.
+   * @param dimensions  "two" or "three".
+   * @param example     an example of a command line, without the program.
+   * @param run         does the work and says whether all levels were solved.
+   */
+  int
+  run_program(int                argc,
+              char             **argv,
+              const std::string &program,
+              const std::string &dimensions,
+              const std::string &example,
+              const std::function<bool(const Parameters &, const Start)> &run);
+} // namespace Friction
+
+#endif

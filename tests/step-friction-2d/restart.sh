@@ -1,0 +1,216 @@
+#!/bin/sh
+# A run that is killed again and again, and continued: no file is damaged in
+# between, and in the end table and files are those of a run that was left alone.
+#
+# Usage: restart.sh PROGRAM SCENE LAST_LEVEL BOUND N [MPIEXEC NUMPROC_FLAG]
+#
+# BOUND: by how much the number of cycles on a level may differ. N: number of
+# processes; without MPIEXEC, or for N = 1, the program is called directly.
+program=$1
+scene=$2
+last=$3
+bound=$4
+n=$5
+mpiexec=$6
+numproc_flag=$7
+tests=$(cd "$(dirname "$0")/.." && pwd)
+
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+
+# Open MPI: under root, and with more processes than cores.
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+export OMPI_MCA_rmaps_base_oversubscribe=1
+
+# A file that grows beyond all measure is an error, too; in blocks of 512 bytes.
+ulimit -f 1000000
+
+# Some python that can read what we write; without one, files are not looked at.
+python=
+for candidate in python3 /usr/bin/python3; do
+  if "$candidate" -c 'import h5py, numpy' 2>/dev/null; then
+    python=$candidate
+    break
+  fi
+done
+
+# verdict NAME PROBLEM: an empty problem is none.
+verdict()
+{
+  if [ -z "$2" ]; then
+    echo "ok      $1"
+  else
+    echo "FAILED  $1:$2"
+    for file in stdout stderr; do
+      echo "  $file:"
+      sed 's/^/    /' $file
+    done
+    failures=$((failures + 1))
+  fi
+}
+
+# run PROCESSES DIRECTORY ARGUMENTS...: until it ends or is killed.
+run()
+{
+  processes=$1
+  directory=$2
+  shift 2
+  set -- "$program" "$scene" "Output/Directory=$directory" \
+    Output/Checkpoint=true Output/Format=hdf5 Output/Times=false "$@"
+  [ "$processes" -gt 1 ] && set -- "$mpiexec" "$numproc_flag" "$processes" "$@"
+  "$@" >stdout 2>stderr
+  status=$?
+}
+
+# The processes of the program, but not their launcher.
+processes_in()
+{
+  for process in /proc/[0-9]*; do
+    [ "$(readlink "$process/exe")" = "$program" ] &&
+      tr '\0' '\n' <"$process/cmdline" 2>/dev/null |
+      grep -q -x "Output/Directory=$1" && echo "${process#/proc/}"
+  done
+}
+
+# check_files NAME DIRECTORY [--unfinished]
+check_files()
+{
+  [ -n "$python" ] || return
+  problem=
+  "$python" "$tests/output/check_results.py" "$2" $3 >message 2>&1 ||
+    problem=" $(tail -1 message)"
+  verdict "$1" "$problem"
+}
+
+# The table without its header and remarks.
+table()
+{
+  grep '^ *[0-9]* ' "$1"
+}
+
+run "$n" "$work/whole" "Refinement/Levels=$last"
+cp stdout whole.txt
+problem=
+[ $status -eq 0 ] || problem=" status $status"
+[ -d "whole/checkpoint-0$last" ] || problem="$problem no checkpoint"
+[ "$(find whole -name 'checkpoint*' -prune | wc -l)" -eq 1 ] ||
+  problem="$problem old checkpoints"
+verdict 'a run that is left alone' "$problem"
+check_files 'files of a run that is left alone' whole
+
+# Killed at its first checkpoint, with the next level or output in progress,
+# and then once more at every other one.
+restart=
+for level in $(seq 1 $((last - 1))); do
+  processes=$n
+  # Once with fewer processes.
+  [ "$level" -eq 2 ] && processes=$(((n + 1) / 2))
+  run "$processes" "$work/killed" "Refinement/Levels=$last" $restart &
+  launched=$!
+  while kill -0 $launched 2>/dev/null &&
+    [ ! -d "killed/checkpoint-0$level" ]; do
+    sleep 0.01
+  done
+  sleep "0.$level"
+  victims=$(processes_in "$work/killed")
+  [ -n "$victims" ] && kill -9 $victims
+  wait $launched 2>/dev/null
+  problem=
+  [ -n "$victims" ] || problem=' it had ended'
+  ls -d killed/checkpoint-0* >/dev/null 2>&1 || problem="$problem no checkpoint"
+  verdict "killed at level $level" "$problem"
+  check_files "files of a run that was killed" killed --unfinished
+  restart=--restart
+done
+
+# What a run leaves that is killed while it writes a checkpoint.
+mkdir -p killed/checkpoint.part killed/checkpoint-99.part
+echo half >killed/checkpoint.part/record
+echo half >killed/checkpoint-99.part/record
+
+run "$n" "$work/killed" "Refinement/Levels=$last" --restart
+problem=
+[ $status -eq 0 ] || problem=" status $status"
+table stdout >killed.txt
+table whole.txt | paste - killed.txt | awk -v bound="$bound" '
+  {
+    if (NF != 18) { print "rows"; next }
+    for (i = 1; i <= 6; ++i)
+      if ($i != $(i + 9)) print "column", i, "of level", $1
+    if ($7 - $16 > bound || $16 - $7 > bound) print "cycles of level", $1
+    if (($9 - $18)^2 > (1e-5 * $9)^2) print "energy of level", $1
+  }' >differences
+[ "$(table whole.txt | wc -l)" -eq $((last + 1)) ] || problem="$problem rows"
+[ -s differences ] && problem="$problem $(tr '\n' ',' <differences)"
+verdict 'a run that was killed and continued' "$problem"
+check_files 'files of a run that was continued' killed --unfinished
+
+if [ -n "$python" ]; then
+  problem=
+  "$python" - >message 2>&1 <<'END' || problem=" $(tail -1 message)"
+import h5py
+import numpy as np
+
+with h5py.File("whole/history.h5") as a, h5py.File("killed/history.h5") as b:
+    for key in a["levels"]:
+        if key.endswith("seconds") or key in ("cycles", "contraction",
+                                              "certificate"):
+            continue
+        x, y = a["levels"][key][()], b["levels"][key][()]
+        assert x.shape == y.shape, key
+        assert np.allclose(x, y, rtol=1e-5, atol=1e-9), key
+    assert sum(b["levels/cycles"]) == len(b["cycles/level"])
+    assert list(a["contact"]) == list(b["contact"])
+    for level in a["contact"]:
+        x, y = a["contact"][level], b["contact"][level]
+        assert np.array_equal(x["point"], y["point"]), level
+        assert np.array_equal(x["state"], y["state"]), level
+        force = np.abs(x["force"][()]).max()
+        assert np.abs(x["force"][()] - y["force"][()]).max() < 1e-5 * force
+END
+  verdict 'histories' "$problem"
+fi
+
+# A run that has finished can be given one more level.
+run "$n" "$work/killed" "Refinement/Levels=$((last + 1))" --restart
+problem=
+[ $status -eq 0 ] || problem=" status $status"
+[ "$(table stdout | wc -l)" -eq $((last + 2)) ] || problem="$problem rows"
+[ -d "killed/checkpoint-0$((last + 1))" ] || problem="$problem no checkpoint"
+ls killed/checkpoint*.part >/dev/null 2>&1 && problem="$problem left-overs"
+verdict 'one more level' "$problem"
+check_files 'files of one more level' killed --unfinished
+
+# expect_sentence NAME PATTERN
+expect_sentence()
+{
+  problem=
+  [ $status -eq 2 ] || problem="$problem status $status"
+  [ "$(grep -c '^step-friction-[23]d: .*[.?]$' stderr)" -eq 1 ] ||
+    problem="$problem no sentence"
+  grep -q -e "$2" stderr || problem="$problem '$2' is not named"
+  [ -s stdout ] && problem="$problem something on standard output"
+  verdict "$1" "$problem"
+}
+
+run "$n" "$work/empty" --restart
+expect_sentence 'no checkpoint' 'no checkpoint'
+run "$n" "$work/killed" --restart "Refinement/Levels=$((last - 1))"
+expect_sentence 'fewer levels' 'Refinement/Levels'
+run "$n" "$work/killed" --restart "Refinement/Levels=$((last + 1))" \
+  'Contact/Friction coefficient=0.3'
+expect_sentence 'another problem' "'Contact/Friction coefficient' has changed"
+echo damaged >"killed/checkpoint-0$((last + 1))/record"
+run "$n" "$work/killed" --restart "Refinement/Levels=$((last + 1))"
+expect_sentence 'damaged' 'cannot be read'
+
+# A new run in the same directory begins with a clean slate.
+run "$n" "$work/killed" Refinement/Levels=0
+problem=
+[ $status -eq 0 ] || problem=" status $status"
+find killed -name 'checkpoint*' | grep -q . && problem="$problem old checkpoint"
+verdict 'a new run' "$problem"
+
+[ $failures -eq 0 ]
