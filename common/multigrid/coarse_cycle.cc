@@ -1,5 +1,5 @@
 #include <common/multigrid/coarse_cycle.h>
-#include <common/parallel/communication_count.h>
+#include <common/parallel/phase_costs.h>
 #include <common/parallel/reductions.h>
 
 #include <algorithm>
@@ -121,7 +121,7 @@ namespace Friction
 
     // Each leaf node takes its correction from its finest level.
     {
-      const CommunicationPhase phase(SolverPhase::transfer);
+      const PhaseScope phase(SolverPhase::transfer);
       transfer_ghosts[top].update(correction[top].data(), dim);
     }
     for (unsigned int k = 0; k <= top; ++k)
@@ -174,7 +174,7 @@ namespace Friction
             for (unsigned int d = 0; d < dim; ++d)
               own[dim * node + d] -= inherited[d];
           }
-        const CommunicationPhase phase(SolverPhase::coarse_sweeps);
+        const PhaseScope phase(SolverPhase::coarse_sweeps);
         coupled_ghosts[k].update(own.data(), dim);
         matrices.matrix(k).residual(
           defect[k].data(), rhs[k].data(), own.data());
@@ -187,7 +187,7 @@ namespace Friction
       visit(k - 1);
 
     {
-      const CommunicationPhase phase(SolverPhase::transfer);
+      const PhaseScope phase(SolverPhase::transfer);
       transfer_ghosts[k - 1].update(coarse.data(), dim);
       for (unsigned int i = 0; i < coarse.size(); ++i)
         before[i] = coarse[i] - before[i];
@@ -208,7 +208,7 @@ namespace Friction
                           const bool         backwards,
                           double            *defect_after)
   {
-    const CommunicationPhase phase(SolverPhase::coarse_sweeps);
+    const PhaseScope phase(SolverPhase::coarse_sweeps);
     if (!bounded)
       gauss_seidel_sweeps<dim>(schedules[k],
                                matrices.matrix(k),
@@ -308,10 +308,10 @@ namespace Friction
   void
   CoarseCycle<dim>::solve_coarsest()
   {
-    const CommunicationPhase phase(SolverPhase::coarsest);
-    const MPI_Comm           comm     = constraints.communicator();
-    const unsigned int       n_values = dim * hierarchy.level(0).n_nodes();
-    LevelVector             &c        = correction[0];
+    const PhaseScope   phase(SolverPhase::coarsest);
+    const MPI_Comm     comm     = constraints.communicator();
+    const unsigned int n_values = dim * hierarchy.level(0).n_nodes();
+    LevelVector       &c        = correction[0];
     if (!bounded)
       {
         coarsest->solve(c.data(), rhs[0].data());
@@ -357,11 +357,11 @@ namespace Friction
   void
   CoarseCycle<dim>::restrict_residual(const unsigned int k)
   {
-    const CommunicationPhase phase(SolverPhase::transfer);
-    const auto              &level = hierarchy.level(k);
-    LevelVector             &r     = rhs[k];
-    const double *finer = k + 2 < hierarchy.n_levels() ? defect[k + 1].data()
-                                                       : leaf_residual->begin();
+    const PhaseScope phase(SolverPhase::transfer);
+    const auto      &level = hierarchy.level(k);
+    LevelVector     &r     = rhs[k];
+    const double    *finer = k + 2 < hierarchy.n_levels() ? defect[k + 1].data()
+                                                          : leaf_residual->begin();
     for (unsigned int node = 0; node < level.n_local_nodes(); ++node)
       {
         double sum[dim] = {};
@@ -390,16 +390,16 @@ namespace Friction
   void
   CoarseCycle<dim>::restrict_bounds(const unsigned int k)
   {
-    const CommunicationPhase phase(SolverPhase::transfer);
-    const auto              &level      = hierarchy.level(k);
-    const bool               finer_last = (k + 2 >= hierarchy.n_levels());
-    LevelVector             &bounds     = restricted_bounds[k];
-    const auto room = [&](const bool is_upper, const unsigned int i) {
+    const PhaseScope phase(SolverPhase::transfer);
+    const auto      &level      = hierarchy.level(k);
+    const bool       finer_last = (k + 2 >= hierarchy.n_levels());
+    LevelVector     &bounds     = restricted_bounds[k];
+    const auto       room = [&](const bool is_upper, const unsigned int i) {
       if (finer_last)
         return is_upper ? leaf_upper->local_element(i)
-                        : -leaf_lower->local_element(i);
+                              : -leaf_lower->local_element(i);
       return is_upper ? upper[k + 1][i] - correction[k + 1][i]
-                      : correction[k + 1][i] - lower[k + 1][i];
+                            : correction[k + 1][i] - lower[k + 1][i];
     };
 
     std::fill(bounds.begin(), bounds.end(), infinity);

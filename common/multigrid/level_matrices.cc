@@ -1,6 +1,6 @@
 #include <common/multigrid/interface_damping.h>
 #include <common/multigrid/level_matrices.h>
-#include <common/parallel/communication_count.h>
+#include <common/parallel/phase_costs.h>
 #include <common/parallel/reductions.h>
 
 #include <algorithm>
@@ -157,8 +157,9 @@ namespace Friction
 
     for (auto &parts : incoming[k])
       {
-        MPI_Status status;
-        int        size;
+        MPI_Status         status;
+        int                size;
+        const WaitingScope waiting;
         MPI_Probe(parts.first, tag, nodes.communicator(), &status);
         MPI_Get_count(&status, MPI_DOUBLE, &size);
         std::vector<double> message(size);

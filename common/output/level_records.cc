@@ -55,6 +55,7 @@ namespace Friction
   {
     LevelRecords<dim> records;
 
+    records.costs       = report.costs;
     LevelRecord &record = records.level;
     record.level        = level;
     record.cells = dof_handler.get_triangulation().n_global_active_cells();

@@ -12,6 +12,9 @@ namespace Friction
   template <int dim>
   struct LevelRecords
   {
+    /// What the solver has cost this process.
+    PhaseCosts costs{};
+
     LevelRecord              level;
     std::vector<CycleRecord> cycles;
     std::vector<OuterRecord> outer;

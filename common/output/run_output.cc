@@ -1,3 +1,5 @@
+#include <common/compatibility.h>
+#include <common/output/profile.h>
 #include <common/output/run_output.h>
 
 #include <boost/archive/binary_iarchive.hpp>
@@ -86,6 +88,12 @@ namespace Friction
       checkpoints.remove_all();
 
     the_console.level_complete(records.level);
+    if (parameters.output.profile)
+      the_console.note(
+        describe_profile(records.costs,
+                         records.level.cycles,
+                         parameters.output.times,
+                         Compatibility::mpi_communicator(dof_handler)));
     history.add_level(
       records.level, records.cycles, records.contact, records.outer);
     if (parameters.output.fields)

@@ -1,5 +1,5 @@
-#include <common/parallel/communication_count.h>
 #include <common/parallel/ghost_exchange.h>
+#include <common/parallel/phase_costs.h>
 
 #include <algorithm>
 #include <map>
@@ -84,6 +84,19 @@ namespace Friction
 
 
   void
+  GhostExchange::wait()
+  {
+    if (!requests.empty())
+      {
+        const WaitingScope waiting;
+        MPI_Waitall(requests.size(), requests.data(), MPI_STATUSES_IGNORE);
+      }
+    requests.clear();
+  }
+
+
+
+  void
   GhostExchange::start(const double *values, const unsigned int values_per_node)
   {
     Assert(requests.empty(), ExcMessage("The last exchange is not finished."));
@@ -117,9 +130,7 @@ namespace Friction
   void
   GhostExchange::finish(double *values)
   {
-    if (!requests.empty())
-      MPI_Waitall(requests.size(), requests.data(), MPI_STATUSES_IGNORE);
-    requests.clear();
+    wait();
     for (const Neighbour &n : neighbours)
       {
         const double *source = n.received.data();
@@ -153,9 +164,7 @@ namespace Friction
                         target);
       }
     communicate(true);
-    if (!requests.empty())
-      MPI_Waitall(requests.size(), requests.data(), MPI_STATUSES_IGNORE);
-    requests.clear();
+    wait();
     for (const Neighbour &n : neighbours)
       {
         const double *source = n.received.data();

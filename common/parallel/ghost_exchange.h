@@ -87,6 +87,8 @@ namespace Friction
     unsigned int             n_values = 0;
 
     void communicate(const bool to_owners);
+
+    void wait();
   };
 } // namespace Friction
 

@@ -1,7 +1,7 @@
 #ifndef friction_parallel_reductions_h
 #define friction_parallel_reductions_h
 
-#include <common/parallel/communication_count.h>
+#include <common/parallel/phase_costs.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -24,6 +24,7 @@ namespace Friction
     if (dealii::Utilities::MPI::n_mpi_processes(comm) > 1)
       {
         count_reduction();
+        const WaitingScope waiting;
         MPI_Allreduce(
           values.data(), result.data(), n, MPI_DOUBLE, MPI_SUM, comm);
       }
@@ -37,6 +38,7 @@ namespace Friction
     if (dealii::Utilities::MPI::n_mpi_processes(comm) > 1)
       {
         count_reduction();
+        const WaitingScope waiting;
         MPI_Allreduce(MPI_IN_PLACE,
                       values.data(),
                       values.size(),
@@ -61,6 +63,7 @@ namespace Friction
     if (dealii::Utilities::MPI::n_mpi_processes(comm) > 1)
       {
         count_reduction();
+        const WaitingScope waiting;
         MPI_Allreduce(
           values.data(), result.data(), n, MPI_DOUBLE, MPI_MAX, comm);
       }
@@ -73,6 +76,7 @@ namespace Friction
     if (dealii::Utilities::MPI::n_mpi_processes(comm) > 1)
       {
         count_reduction();
+        const WaitingScope waiting;
         MPI_Allreduce(MPI_IN_PLACE,
                       values.data(),
                       values.size(),

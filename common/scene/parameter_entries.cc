@@ -376,6 +376,13 @@ namespace Friction
        "Whether the console shows what depends on the clock: seconds and "
        "progress."},
       {"Output",
+       "Profile",
+       "false",
+       flag,
+       "Whether the console shows for each level what the parts of the solver "
+       "have cost: messages, bytes and reductions per cycle and process, and "
+       "seconds if 'Times' are wanted."},
+      {"Output",
        "Verbosity",
        "cycles",
        choice("quiet|levels|cycles"),

@@ -698,6 +698,7 @@ namespace Friction
                                               : FieldFormat::hdf5);
       output.checkpoint = values.flag("Output/Checkpoint");
       output.times      = values.flag("Output/Times");
+      output.profile    = values.flag("Output/Profile");
       output.verbosity  = (verbosity == "quiet"      ? Verbosity::quiet
                              : verbosity == "levels" ? Verbosity::levels
                                                      : Verbosity::cycles);

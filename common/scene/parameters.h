@@ -188,6 +188,7 @@ namespace Friction
       FieldFormat format     = FieldFormat::vtu;
       bool        checkpoint = false; ///< one after each level
       bool        times      = true;  ///< print what depends on the clock
+      bool        profile    = false; ///< print what the solver has cost
       Verbosity   verbosity  = Verbosity::cycles;
     };
 

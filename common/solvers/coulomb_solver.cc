@@ -68,8 +68,9 @@ namespace Friction
                             ContactState   &state,
                             const Progress &progress)
   {
-    SolverReport report;
-    const bool   coulomb =
+    SolverReport     report;
+    const PhaseCosts before = phase_costs();
+    const bool       coulomb =
       problem.has_friction() && problem.friction_law == FrictionLaw::coulomb;
 
     if (coulomb && settings.algorithm == Algorithm::fixed_point)
@@ -99,6 +100,7 @@ namespace Friction
                                                force_of_rounding(problem, u));
     if (!(report.certificate.largest() <= settings.certificate_tolerance))
       report.converged = false;
+    report.costs = phase_costs() - before;
     return report;
   }
 

@@ -2,6 +2,7 @@
 #define friction_solvers_coulomb_solver_h
 
 #include <common/contact/certificate.h>
+#include <common/parallel/phase_costs.h>
 #include <common/solvers/monotone_multigrid.h>
 
 #include <vector>
@@ -37,6 +38,9 @@ namespace Friction
     double rho_tau_contraction() const;
 
     Certificate certificate;
+
+    /// What this process has spent on the solution, by phase.
+    PhaseCosts costs;
 
     /// The energy of the solution, and its residual f - A u at all nodes.
     double     energy = 0;

@@ -1,4 +1,4 @@
-#include <common/parallel/communication_count.h>
+#include <common/parallel/phase_costs.h>
 #include <common/parallel/reductions.h>
 #include <common/solvers/monotone_multigrid.h>
 
@@ -30,7 +30,7 @@ namespace Friction
       }
 
     private:
-      const CommunicationPhase                    communication;
+      const PhaseScope                            communication;
       double                                     &seconds;
       const std::chrono::steady_clock::time_point start;
     };

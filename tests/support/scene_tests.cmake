@@ -1,5 +1,17 @@
-# Every shipped scene of a step program runs in a test: NAME.prm.in is the
-# shipped file, put in place of @scene_NAME@, and after it what shortens the run.
+# Compares results of one process with those of several.
+if(NOT TARGET compare_histories)
+  add_executable(compare_histories EXCLUDE_FROM_ALL
+    ${CMAKE_SOURCE_DIR}/tests/support/compare_histories.cc)
+  deal_ii_setup_target(compare_histories)
+  add_test(NAME support/compare_histories.build
+    COMMAND ${CMAKE_COMMAND} --build ${CMAKE_BINARY_DIR} --target compare_histories)
+  set_tests_properties(support/compare_histories.build PROPERTIES
+    LABELS support FIXTURES_SETUP compare_histories TIMEOUT ${TEST_TIME_LIMIT})
+endif()
+
+# Every shipped scene of a step program runs in a test, on one process and on
+# several: NAME.prm.in is the shipped file, put in place of @scene_NAME@, and
+# after it what shortens the run.
 #
 # Not one of deal.II's own parameter file tests, since those would compare
 # numbers of cycles to the last one; BOUND is what they must not exceed.
@@ -21,8 +33,12 @@ function(add_scene_tests PROGRAM BOUND)
         ${CMAKE_CURRENT_BINARY_DIR}/${_name}.prm
         ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.output
         ${NUMDIFF_EXECUTABLE}
-        ${BOUND})
+        ${BOUND}
+        $<TARGET_FILE:compare_histories>
+        ${DEAL_II_MPIEXEC} ${DEAL_II_MPIEXEC_NUMPROC_FLAG}
+        1 2 4)
     set_tests_properties(${PROGRAM}/${_name} PROPERTIES
-      LABELS ${PROGRAM} TIMEOUT ${TEST_TIME_LIMIT})
+      LABELS ${PROGRAM} FIXTURES_REQUIRED compare_histories
+      TIMEOUT ${TEST_TIME_LIMIT})
   endforeach()
 endfunction()

@@ -1,0 +1,60 @@
+// Compares the protocols of two runs of the same scene, the second of them on
+// more processes: the same levels, the same numbers of cells, unknowns, and
+// nodes in contact and sticking, energies to ten digits, and at most two cycles
+// more per outer iteration.
+//
+// Usage: compare_histories HISTORY HISTORY
+
+#include <deal.II/base/hdf5.h>
+#include <deal.II/base/mpi.h>
+
+#include <cmath>
+#include <iostream>
+#include <string>
+#include <vector>
+
+int
+main(int argc, char **argv)
+{
+  using namespace dealii;
+  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  AssertThrow(argc == 3, ExcMessage("Two files are to be compared."));
+  const HDF5::File a(argv[1], HDF5::File::FileAccessMode::open);
+  const HDF5::File b(argv[2], HDF5::File::FileAccessMode::open);
+  const auto column = [](const HDF5::File &file, const std::string &name) {
+    return file.open_group("levels")
+      .open_dataset(name)
+      .read<std::vector<double>>();
+  };
+
+  bool good = true;
+  for (const std::string name :
+       {"level", "cells", "dofs", "contact_nodes", "sticky_nodes", "energy"})
+    {
+      const auto x = column(a, name), y = column(b, name);
+      if (x.size() != y.size())
+        {
+          std::cout << "FAILED: " << y.size() << " levels instead of "
+                    << x.size() << std::endl;
+          return 1;
+        }
+      for (unsigned int i = 0; i < x.size(); ++i)
+        if (!(std::abs(x[i] - y[i]) <= 1e-10 * std::abs(x[i])))
+          {
+            std::cout.precision(13);
+            std::cout << "FAILED: " << name << " on level " << i << " is "
+                      << y[i] << " instead of " << x[i] << std::endl;
+            good = false;
+          }
+    }
+  const auto x = column(a, "cycles"), y = column(b, "cycles"),
+             outer = column(a, "outer_iterations");
+  for (unsigned int i = 0; i < x.size(); ++i)
+    if (y[i] > x[i] + 2 * outer[i])
+      {
+        std::cout << "FAILED: " << y[i] << " cycles instead of " << x[i]
+                  << " on level " << i << std::endl;
+        good = false;
+      }
+  return good ? 0 : 1;
+}
