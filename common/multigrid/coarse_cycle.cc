@@ -33,14 +33,16 @@ namespace Friction
                                 const LevelHierarchy<dim>   &hierarchy,
                                 const NodalConstraints<dim> &constraints,
                                 const Cycle                  cycle,
-                                const unsigned int           smoothing_steps)
+                                const unsigned int           smoothing_steps,
+                                const CoarsestMethod         coarsest_method)
     : hierarchy(hierarchy)
     , constraints(constraints)
     , cycle_parameter(cycle == Cycle::V ? 1 : 2)
     , smoothing_steps(smoothing_steps)
     , matrices(leaf_matrix, hierarchy, constraints)
   {
-    coarsest = std::make_unique<CoarsestSolver<dim>>(dof_handler, matrices);
+    coarsest = std::make_unique<CoarsestSolver<dim>>(
+      dof_handler, matrices, coarsest_method);
     const unsigned int n = matrices.n_levels();
     rhs.resize(n);
     for (unsigned int k = 0; k < n; ++k)

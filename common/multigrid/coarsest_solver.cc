@@ -9,9 +9,10 @@ namespace Friction
 {
   template <int dim>
   CoarsestSolver<dim>::CoarsestSolver(const DoFHandler<dim>    &dof_handler,
-                                      const LevelMatrices<dim> &level_matrices)
+                                      const LevelMatrices<dim> &level_matrices,
+                                      const CoarsestMethod      method)
     : level_matrices(level_matrices)
-    , control(1, 0.)
+    , solver(method, dim)
   {
     const NodeBlockMatrix<dim> &B     = level_matrices.matrix(0);
     const IndexSet             &owned = dof_handler.locally_owned_mg_dofs(0);
@@ -28,14 +29,14 @@ namespace Friction
         }
     matrix.reinit(
       owned, owned, pattern, Compatibility::mpi_communicator(dof_handler));
-    factorize();
+    set_up();
   }
 
 
 
   template <int dim>
   void
-  CoarsestSolver<dim>::factorize()
+  CoarsestSolver<dim>::set_up()
   {
     const NodeBlockMatrix<dim> &B     = level_matrices.matrix(0);
     const auto                 &nulls = level_matrices.coarsest_null_spaces();
@@ -78,24 +79,7 @@ namespace Friction
       }
     matrix.compress(VectorOperation::insert);
 
-    // Truncated functions of several nodes may have become dependent. Residuals
-    // have no part in the direction that is lost, so that it does not matter
-    // what stiffness it is given.
-    const auto factorize_matrix = [&]() {
-      solver = std::make_unique<TrilinosWrappers::SolverDirect>(control);
-      solver->initialize(matrix);
-    };
-    try
-      {
-        factorize_matrix();
-      }
-    catch (const ExceptionBase &)
-      {
-        for (unsigned int i = 0; i < dim * B.n_rows(); ++i)
-          matrix.add(i, i, 1e-10 * scale);
-        matrix.compress(VectorOperation::add);
-        factorize_matrix();
-      }
+    solver.initialize(matrix);
     version = level_matrices.coarsest_version();
   }
 
@@ -122,10 +106,10 @@ namespace Friction
   CoarsestSolver<dim>::solve(VectorType &c, const VectorType &r)
   {
     if (version != level_matrices.coarsest_version())
-      factorize();
+      set_up();
     rhs = r;
     project(rhs);
-    solver->solve(c, rhs);
+    solver.solve(c, rhs);
     project(c);
   }
 

@@ -1,26 +1,23 @@
 #ifndef friction_multigrid_coarsest_solver_h
 #define friction_multigrid_coarsest_solver_h
 
+#include <common/multigrid/algebraic_solver.h>
 #include <common/multigrid/level_matrices.h>
 
 #include <deal.II/dofs/dof_handler.h>
 
 #include <deal.II/lac/la_parallel_vector.h>
-#include <deal.II/lac/solver_control.h>
-#include <deal.II/lac/trilinos_solver.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
-
-#include <memory>
 
 namespace Friction
 {
   /**
-   * Solves the truncated problem of the coarsest level directly, by Trilinos.
+   * Solves the truncated problem of the coarsest level, by AlgebraicSolver.
    *
    * Directions in which a coarse function has vanished by truncation, or which
    * are prescribed, are taken out of the matrix and replaced by a multiple of
-   * the identity, so that it stays positive definite. The factorisation is
-   * renewed only when the coarsest matrix has changed.
+   * the identity, so that it stays positive definite. It is set up anew only
+   * when the coarsest matrix has changed.
    */
   template <int dim>
   class CoarsestSolver
@@ -28,20 +25,26 @@ namespace Friction
   public:
     /** @p level_matrices is kept by reference; it must have a level 0. */
     CoarsestSolver(const DoFHandler<dim>    &dof_handler,
-                   const LevelMatrices<dim> &level_matrices);
+                   const LevelMatrices<dim> &level_matrices,
+                   const CoarsestMethod      method);
 
     /** c = B_0^{-1} r, with zero in all directions that cannot move. */
     void solve(VectorType &c, const VectorType &r);
 
-  private:
-    const LevelMatrices<dim>                       &level_matrices;
-    TrilinosWrappers::SparseMatrix                  matrix;
-    SolverControl                                   control;
-    std::unique_ptr<TrilinosWrappers::SolverDirect> solver;
-    VectorType                                      rhs;
-    unsigned int                                    version = 0;
+    const AlgebraicSolver &
+    algebraic_solver() const
+    {
+      return solver;
+    }
 
-    void factorize();
+  private:
+    const LevelMatrices<dim>      &level_matrices;
+    TrilinosWrappers::SparseMatrix matrix;
+    AlgebraicSolver                solver;
+    VectorType                     rhs;
+    unsigned int                   version = 0;
+
+    void set_up();
 
     void project(VectorType &v) const;
   };
