@@ -47,8 +47,9 @@ namespace Friction
     /** Relative energy norm of the error at which conjugate gradients stop. */
     static constexpr double tolerance = 1e-3;
 
-    /** Up to this number of unknowns CoarsestMethod::automatic is direct. */
-    static constexpr types::global_dof_index largest_direct_size = 5000;
+    /** Up to this number of unknowns CoarsestMethod::automatic is direct. It is
+     * also where algebraic multigrid itself stops coarsening. */
+    static constexpr types::global_dof_index largest_direct_size = 2000;
 
     /**
      * @param n_components  of a node; component c of node i has the number

@@ -304,9 +304,13 @@ namespace Friction
 
 
 
-  // Within bounds, the direct solution serves if it happens to be admissible.
-  // Otherwise the coarsest level, being tiny, is relaxed for as long as it
-  // pays.
+  // Within bounds, the solution serves if it happens to be admissible.
+  // Otherwise, in turns, relax, which settles what touches its bounds and what
+  // leaves them, and solve for all that does not touch. A step that leaves the
+  // bounds is projected back, or if the energy does not like this, shortened.
+  // Each part stays within the bounds and lowers the energy, so that it may
+  // end anywhere; what is left over is left to the next cycle. Few nodes have
+  // bounds, however many the level has: few turns do.
   template <int dim>
   void
   CoarseCycle<dim>::solve_coarsest()
@@ -318,26 +322,67 @@ namespace Friction
         return;
       }
 
-    VectorType &trial = work[0];
-    coarsest->solve(trial, rhs[0]);
-    bool inside = true;
-    for (unsigned int i = 0; i < trial.locally_owned_size(); ++i)
-      inside = inside && trial.local_element(i) <= upper[0].local_element(i) &&
-        trial.local_element(i) >= lower[0].local_element(i);
-    if (inside)
+    const NodeBlockMatrix<dim> &B    = matrices.matrix(0);
+    const double               *lo   = lower[0].begin();
+    const double               *up   = upper[0].begin();
+    VectorType                 &step = work[0];
+    VectorType                 &r    = defect[0];
+    const auto clamp = [&](const unsigned int i, const double length) {
+      const double x = c.local_element(i) + length * step.local_element(i);
+      return std::min(std::max(x, lo[i]), up[i]);
+    };
+
+    // Returns whether the bounds allow the whole step.
+    const auto make_step = [&]() {
+      double admissible = 1.;
+      for (unsigned int i = 0; i < step.locally_owned_size(); ++i)
+        {
+          const double s    = step.local_element(i);
+          const double room = (s > 0 ? up[i] : lo[i]) - c.local_element(i);
+          if (std::abs(s) > std::abs(room))
+            admissible = std::min(admissible, room / s);
+        }
+      double length = 1.;
+      if (admissible < 1.)
+        {
+          const auto lowers_energy = [&]() {
+            VectorType part(step), image(step);
+            for (unsigned int i = 0; i < step.locally_owned_size(); ++i)
+              part.local_element(i) = clamp(i, length) - c.local_element(i);
+            B.vmult(image.begin(), part.begin());
+            return part * r > .5 * (part * image);
+          };
+          while (length > std::max(admissible, .01) && !lowers_energy())
+            length *= .5;
+          if (length <= std::max(admissible, .01))
+            length = admissible;
+        }
+      for (unsigned int i = 0; i < step.locally_owned_size(); ++i)
+        c.local_element(i) = clamp(i, length);
+      return admissible == 1.;
+    };
+
+    B.residual(r.begin(), rhs[0].begin(), c.begin());
+    coarsest->solve(step, r);
+    if (make_step())
+      return;
+
+    const NodeRanges  all = {{0, hierarchy.level(0).n_nodes()}};
+    std::vector<char> is_fixed(c.locally_owned_size());
+    for (unsigned int turn = 0; turn < 10; ++turn)
       {
-        c = trial;
-        return;
-      }
-    const NodeRanges all = {{0, hierarchy.level(0).n_nodes()}};
-    for (unsigned int sweep = 0; sweep < 50; ++sweep)
-      {
-        trial = c;
+        step = c;
         relax_within_bounds(0, all, false);
         relax_within_bounds(0, all, true);
-        trial -= c;
-        if (trial.linfty_norm() <= 1e-6 * c.linfty_norm())
+        step -= c;
+        if (step.linfty_norm() <= 1e-6 * c.linfty_norm())
           break;
+        B.residual(r.begin(), rhs[0].begin(), c.begin());
+        for (unsigned int i = 0; i < c.locally_owned_size(); ++i)
+          is_fixed[i] =
+            (c.local_element(i) <= lo[i] || c.local_element(i) >= up[i]);
+        coarsest->solve_on_face(step, r, is_fixed);
+        make_step();
       }
   }
 

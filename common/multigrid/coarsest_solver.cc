@@ -115,6 +115,34 @@ namespace Friction
 
 
 
+  template <int dim>
+  void
+  CoarsestSolver<dim>::solve_on_face(VectorType              &c,
+                                     const VectorType        &r,
+                                     const std::vector<char> &is_fixed)
+  {
+    if (version != level_matrices.coarsest_version())
+      set_up();
+    const auto &nulls = level_matrices.coarsest_null_spaces();
+    solver.solve_in_subspace(c, r, [&](VectorType &v) {
+      for (unsigned int i = 0; i < nulls.size(); ++i)
+        {
+          unsigned int n_fixed = 0;
+          for (unsigned int d = 0; d < dim; ++d)
+            n_fixed += is_fixed[dim * i + d];
+          if (n_fixed == 0)
+            continue;
+          const bool all = (trace<dim>(nulls[i].data()) > 0.5);
+          for (unsigned int d = 0; d < dim; ++d)
+            if (all || is_fixed[dim * i + d])
+              v.local_element(dim * i + d) = 0.;
+        }
+      project(v);
+    });
+  }
+
+
+
   template class CoarsestSolver<2>;
   template class CoarsestSolver<3>;
 } // namespace Friction

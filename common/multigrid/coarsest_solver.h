@@ -9,6 +9,8 @@
 #include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
+#include <vector>
+
 namespace Friction
 {
   /**
@@ -30,6 +32,16 @@ namespace Friction
 
     /** c = B_0^{-1} r, with zero in all directions that cannot move. */
     void solve(VectorType &c, const VectorType &r);
+
+    /**
+     * The same among those c that vanish in all components with @p is_fixed,
+     * one flag per locally owned degree of freedom. Where in addition some
+     * direction of a node cannot move, nothing of this node does: c is a
+     * direction of descent, but near such nodes not the best one.
+     */
+    void solve_on_face(VectorType              &c,
+                       const VectorType        &r,
+                       const std::vector<char> &is_fixed);
 
     const AlgebraicSolver &
     algebraic_solver() const
