@@ -114,7 +114,13 @@ namespace Friction
     if (is_direct())
       factorization->solve(x, b);
     else
-      iterate(x, b, [](VectorType &) {});
+      {
+        iterate(x, b, [](VectorType &) {});
+        if (new_iterations == 0)
+          new_iterations = last_iterations;
+        is_worn_out =
+          (last_iterations > new_iterations + new_iterations / 2 + 2);
+      }
   }
 
 
@@ -150,12 +156,7 @@ namespace Friction
       {
         factorize();
         conjugate_gradients(x, b, project);
-        return;
       }
-
-    if (new_iterations == 0)
-      new_iterations = last_iterations;
-    is_worn_out = (last_iterations > new_iterations + new_iterations / 2 + 2);
   }
 
 

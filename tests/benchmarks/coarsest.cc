@@ -10,6 +10,7 @@
 
 #include <tests/support/nested_iteration.h>
 
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <string>
@@ -35,14 +36,14 @@ namespace Benchmark
                        "Refinement/Levels=0"}));
     const double               setup = timer.wall_time();
     const Discretization<dim> &d     = *nest.discretization;
-    const LevelMatrices<dim> matrices(d.matrix, *d.hierarchy, *d.constraints);
-    VectorType               c(d.dof_handler.locally_owned_dofs(),
-                               Compatibility::mpi_communicator(d.dof_handler));
-    VectorType               rhs(c);
+    const LevelMatrices<dim>   matrices(d.matrix, *d.hierarchy, *d.constraints);
+    VectorType                 c(d.dof_handler.locally_owned_dofs(),
+                 Compatibility::mpi_communicator(d.dof_handler));
+    VectorType                 rhs(c);
     for (unsigned int i = 0; i < rhs.locally_owned_size(); ++i)
-      rhs.local_element(i) = d.constraints->is_prescribed(i / dim, i % dim) ?
-                               0. :
-                               1. + .5 * std::sin(.01 * i * i);
+      rhs.local_element(i) = d.constraints->is_prescribed(i / dim, i % dim)
+        ? 0.
+        : 1. + .5 * std::sin(.01 * i * i);
 
     std::printf("%8u %7.2f |", d.dof_handler.n_dofs(), setup);
     for (const CoarsestMethod method :
@@ -96,6 +97,7 @@ main(int argc, char *argv[])
           std::cerr << "Usage: benchmark-coarsest 2|3 scene.prm DIRECT n ...\n";
           return 2;
         }
+      std::printf("box in %sD; seconds, on one process\n", argv[1]);
       std::printf("                 |             factorisation         |"
                   "         algebraic multigrid\n"
                   "    dofs    mesh |   setup   solve cycles  problem |"
