@@ -3,6 +3,7 @@
 #include <common/parallel/reductions.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -33,14 +34,16 @@ namespace Friction
                                 const LevelHierarchy<dim>   &hierarchy,
                                 const NodalConstraints<dim> &constraints,
                                 const Cycle                  cycle,
-                                const unsigned int           smoothing_steps)
+                                const unsigned int           smoothing_steps,
+                                const CoarsestMethod         coarsest_method)
     : hierarchy(hierarchy)
     , constraints(constraints)
     , cycle_parameter(cycle == Cycle::V ? 1 : 2)
     , smoothing_steps(smoothing_steps)
     , matrices(leaf_matrix, hierarchy, constraints)
   {
-    coarsest = std::make_unique<CoarsestSolver<dim>>(hierarchy, matrices);
+    coarsest = std::make_unique<CoarsestSolver<dim>>(
+      hierarchy, matrices, coarsest_method);
     const unsigned int n = matrices.n_levels();
     for (unsigned int k = 0; k < n; ++k)
       {
@@ -301,50 +304,99 @@ namespace Friction
 
 
 
-  // Within bounds, the direct solution serves if it happens to be admissible.
-  // Otherwise the coarsest level, being tiny, is relaxed for as long as it
-  // pays.
+  // Within bounds, the solution serves if it happens to be admissible.
+  // Otherwise, in turns, relax, which settles what touches its bounds and what
+  // leaves them, and solve for all that does not touch. A step that leaves the
+  // bounds is projected back, or if the energy does not like this, shortened.
+  // Each part stays within the bounds and lowers the energy, so that it may
+  // end anywhere; what is left over is left to the next cycle. Few nodes have
+  // bounds, however many the level has: few turns do.
   template <int dim>
   void
   CoarseCycle<dim>::solve_coarsest()
   {
     const PhaseScope   phase(SolverPhase::coarsest);
-    const MPI_Comm     comm     = constraints.communicator();
-    const unsigned int n_values = dim * hierarchy.level(0).n_nodes();
     LevelVector       &c        = correction[0];
+    const unsigned int n_values = dim * hierarchy.level(0).n_nodes();
     if (!bounded)
       {
         coarsest->solve(c.data(), rhs[0].data());
         return;
       }
 
-    LevelVector &trial = work[0];
-    coarsest->solve(trial.data(), rhs[0].data());
-    bool inside = true;
-    for (unsigned int i = 0; i < n_values; ++i)
-      inside = inside && trial[i] <= upper[0][i] && trial[i] >= lower[0][i];
-    if (!true_on_any_process(!inside, comm))
-      {
-        std::copy_n(trial.begin(), n_values, c.begin());
-        return;
-      }
-    const NodeRanges all = {{0, hierarchy.level(0).n_nodes()}};
+    const MPI_Comm              comm = constraints.communicator();
+    const NodeBlockMatrix<dim> &B    = matrices.matrix(0);
+    const LevelVector          &lo   = lower[0];
+    const LevelVector          &up   = upper[0];
+    LevelVector                &step = work[0];
+    LevelVector                &r    = defect[0];
+    LevelVector                 part(c.size()), image(c.size());
+    const auto clamp = [&](const unsigned int i, const double length) {
+      return std::min(std::max(c[i] + length * step[i], lo[i]), up[i]);
+    };
+
+    // Returns whether the bounds allow the whole step.
+    const auto make_step = [&]() {
+      double admissible = 1.;
+      for (unsigned int i = 0; i < n_values; ++i)
+        {
+          const double room = (step[i] > 0 ? up[i] : lo[i]) - c[i];
+          if (std::abs(step[i]) > std::abs(room))
+            admissible = std::min(admissible, room / step[i]);
+        }
+      admissible    = -max_over_processes(-admissible, comm);
+      double length = 1.;
+      if (admissible < 1.)
+        {
+          const auto lowers_energy = [&]() {
+            for (unsigned int i = 0; i < n_values; ++i)
+              part[i] = clamp(i, length) - c[i];
+            coupled_ghosts[0].update(part.data(), dim);
+            B.vmult(image.data(), part.data());
+            double gain = 0;
+            for (unsigned int i = 0; i < n_values; ++i)
+              gain += part[i] * (r[i] - .5 * image[i]);
+            return sum_over_processes(gain, comm) > 0;
+          };
+          while (length > std::max(admissible, .01) && !lowers_energy())
+            length *= .5;
+          if (length <= std::max(admissible, .01))
+            length = admissible;
+        }
+      for (unsigned int i = 0; i < n_values; ++i)
+        c[i] = clamp(i, length);
+      coupled_ghosts[0].update(c.data(), dim);
+      return admissible == 1.;
+    };
+
     coupled_ghosts[0].update(c.data(), dim);
-    for (unsigned int sweep = 0; sweep < 50; ++sweep)
+    B.residual(r.data(), rhs[0].data(), c.data());
+    coarsest->solve(step.data(), r.data());
+    if (make_step())
+      return;
+
+    const NodeRanges  all = {{0, hierarchy.level(0).n_nodes()}};
+    std::vector<char> is_fixed(n_values);
+    for (unsigned int turn = 0; turn < 10; ++turn)
       {
-        trial = c;
+        step = c;
         relax_within_bounds(0, all, false);
         relax_within_bounds(0, all, true);
-        double change = 0, size = 0;
+        std::array<double, 2> change_and_size{};
         for (unsigned int i = 0; i < n_values; ++i)
           {
-            change = std::max(change, std::abs(c[i] - trial[i]));
-            size   = std::max(size, std::abs(c[i]));
+            change_and_size[0] =
+              std::max(change_and_size[0], std::abs(c[i] - step[i]));
+            change_and_size[1] = std::max(change_and_size[1], std::abs(c[i]));
           }
-        change = max_over_processes(change, comm);
-        size   = max_over_processes(size, comm);
-        if (change <= 1e-6 * size)
+        change_and_size = max_over_processes(change_and_size, comm);
+        if (change_and_size[0] <= 1e-6 * change_and_size[1])
           break;
+        B.residual(r.data(), rhs[0].data(), c.data());
+        for (unsigned int i = 0; i < n_values; ++i)
+          is_fixed[i] = (c[i] <= lo[i] || c[i] >= up[i]);
+        coarsest->solve_on_face(step.data(), r.data(), is_fixed);
+        make_step();
       }
   }
 

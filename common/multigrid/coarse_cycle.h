@@ -38,11 +38,13 @@ namespace Friction
   {
   public:
     /** The arguments given by reference are kept. */
-    CoarseCycle(const NodeBlockMatrix<dim>  &leaf_matrix,
-                const LevelHierarchy<dim>   &hierarchy,
-                const NodalConstraints<dim> &constraints,
-                const Cycle                  cycle,
-                const unsigned int           smoothing_steps);
+    CoarseCycle(
+      const NodeBlockMatrix<dim>  &leaf_matrix,
+      const LevelHierarchy<dim>   &hierarchy,
+      const NodalConstraints<dim> &constraints,
+      const Cycle                  cycle,
+      const unsigned int           smoothing_steps,
+      const CoarsestMethod         coarsest_method = CoarsestMethod::automatic);
 
     /** Follows a change of phases. Returns the number of block rows computed.
      */

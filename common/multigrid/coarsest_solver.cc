@@ -10,10 +10,11 @@ namespace Friction
 {
   template <int dim>
   CoarsestSolver<dim>::CoarsestSolver(const LevelHierarchy<dim> &hierarchy,
-                                      const LevelMatrices<dim>  &level_matrices)
+                                      const LevelMatrices<dim>  &level_matrices,
+                                      const CoarsestMethod       method)
     : hierarchy(hierarchy)
     , level_matrices(level_matrices)
-    , control(1, 0.)
+    , solver(method, dim)
   {
     const NodeBlockMatrix<dim> &B = level_matrices.matrix(0);
     const NodeDistribution     &nodes =
@@ -33,7 +34,7 @@ namespace Friction
               pattern.add(dof(i, r), dof(B.column(e), c));
         }
     matrix.reinit(owned, owned, pattern, nodes.communicator());
-    factorize();
+    set_up();
   }
 
 
@@ -50,7 +51,7 @@ namespace Friction
 
   template <int dim>
   void
-  CoarsestSolver<dim>::factorize()
+  CoarsestSolver<dim>::set_up()
   {
     const NodeBlockMatrix<dim> &B     = level_matrices.matrix(0);
     const auto                 &nulls = level_matrices.coarsest_null_spaces();
@@ -97,25 +98,7 @@ namespace Friction
       }
     matrix.compress(VectorOperation::insert);
 
-    // Truncated functions of several nodes may have become dependent. Residuals
-    // have no part in the direction that is lost, so that it does not matter
-    // what stiffness it is given.
-    const auto factorize_matrix = [&]() {
-      solver = std::make_unique<TrilinosWrappers::SolverDirect>(control);
-      solver->initialize(matrix);
-    };
-    try
-      {
-        factorize_matrix();
-      }
-    catch (const ExceptionBase &)
-      {
-        for (unsigned int i = 0; i < B.n_rows(); ++i)
-          for (unsigned int r = 0; r < dim; ++r)
-            matrix.add(dof(i, r), dof(i, r), 1e-10 * scale);
-        matrix.compress(VectorOperation::add);
-        factorize_matrix();
-      }
+    solver.initialize(matrix);
     version = level_matrices.coarsest_version();
   }
 
@@ -142,11 +125,41 @@ namespace Friction
   CoarsestSolver<dim>::solve(double *c, const double *r)
   {
     if (version != level_matrices.coarsest_version())
-      factorize();
+      set_up();
     std::copy_n(r, rhs.locally_owned_size(), rhs.begin());
     project(rhs);
-    solver->solve(solution, rhs);
+    solver.solve(solution, rhs);
     project(solution);
+    std::copy_n(solution.begin(), solution.locally_owned_size(), c);
+  }
+
+
+
+  template <int dim>
+  void
+  CoarsestSolver<dim>::solve_on_face(double                  *c,
+                                     const double            *r,
+                                     const std::vector<char> &is_fixed)
+  {
+    if (version != level_matrices.coarsest_version())
+      set_up();
+    const auto &nulls = level_matrices.coarsest_null_spaces();
+    std::copy_n(r, rhs.locally_owned_size(), rhs.begin());
+    solver.solve_in_subspace(solution, rhs, [&](VectorType &v) {
+      for (unsigned int i = 0; i < nulls.size(); ++i)
+        {
+          unsigned int n_fixed = 0;
+          for (unsigned int d = 0; d < dim; ++d)
+            n_fixed += is_fixed[dim * i + d];
+          if (n_fixed == 0)
+            continue;
+          const bool all = (trace<dim>(nulls[i].data()) > 0.5);
+          for (unsigned int d = 0; d < dim; ++d)
+            if (all || is_fixed[dim * i + d])
+              v.local_element(dim * i + d) = 0.;
+        }
+      project(v);
+    });
     std::copy_n(solution.begin(), solution.locally_owned_size(), c);
   }
 

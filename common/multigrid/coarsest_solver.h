@@ -1,48 +1,63 @@
 #ifndef friction_multigrid_coarsest_solver_h
 #define friction_multigrid_coarsest_solver_h
 
+#include <common/multigrid/algebraic_solver.h>
 #include <common/multigrid/level_hierarchy.h>
 #include <common/multigrid/level_matrices.h>
 
 #include <deal.II/lac/la_parallel_vector.h>
-#include <deal.II/lac/solver_control.h>
-#include <deal.II/lac/trilinos_solver.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
-#include <memory>
+#include <vector>
 
 namespace Friction
 {
   /**
-   * Solves the truncated problem of the coarsest level directly, by Trilinos.
+   * Solves the truncated problem of the coarsest level, by AlgebraicSolver.
    *
    * Directions in which a coarse function has vanished by truncation, or which
    * are prescribed, are taken out of the matrix and replaced by a multiple of
-   * the identity, so that it stays positive definite. The factorisation is
-   * renewed only when the coarsest matrix has changed.
+   * the identity, so that it stays positive definite. It is set up anew only
+   * when the coarsest matrix has changed.
    */
   template <int dim>
   class CoarsestSolver
   {
   public:
-    /** The arguments are kept by reference. Collective. */
+    /** Arguments given by reference are kept. Collective. */
     CoarsestSolver(const LevelHierarchy<dim> &hierarchy,
-                   const LevelMatrices<dim>  &level_matrices);
+                   const LevelMatrices<dim>  &level_matrices,
+                   const CoarsestMethod       method);
 
     /** c = B_0^{-1} r at the nodes that the process owns, with zero in all
      * directions that cannot move. Collective. */
     void solve(double *c, const double *r);
 
-  private:
-    const LevelHierarchy<dim>                      &hierarchy;
-    const LevelMatrices<dim>                       &level_matrices;
-    TrilinosWrappers::SparseMatrix                  matrix;
-    SolverControl                                   control;
-    std::unique_ptr<TrilinosWrappers::SolverDirect> solver;
-    VectorType                                      rhs, solution;
-    unsigned int                                    version = 0;
+    /**
+     * The same among those c that vanish in all components with @p is_fixed,
+     * one flag per owned degree of freedom. Where in addition some
+     * direction of a node cannot move, nothing of this node does: c is a
+     * direction of descent, but near such nodes not the best one.
+     */
+    void solve_on_face(double                  *c,
+                       const double            *r,
+                       const std::vector<char> &is_fixed);
 
-    void factorize();
+    const AlgebraicSolver &
+    algebraic_solver() const
+    {
+      return solver;
+    }
+
+  private:
+    const LevelHierarchy<dim>     &hierarchy;
+    const LevelMatrices<dim>      &level_matrices;
+    TrilinosWrappers::SparseMatrix matrix;
+    AlgebraicSolver                solver;
+    VectorType                     rhs, solution;
+    unsigned int                   version = 0;
+
+    void set_up();
 
     void project(VectorType &v) const;
 

@@ -290,6 +290,13 @@ namespace Friction
        steps,
        "The same on the correction levels."},
       {"Solver",
+       "Coarsest solver",
+       "automatic",
+       choice("automatic|direct|algebraic multigrid"),
+       "How the coarsest mesh is solved: by a sparse factorisation, by "
+       "conjugate gradients with algebraic multigrid, or by whichever is "
+       "quicker for its size."},
+      {"Solver",
        "Truncation",
        "phases",
        choice("phases|contact|phases without second order"),

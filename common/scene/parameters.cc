@@ -669,6 +669,11 @@ namespace Friction
                              : truncation == "contact"
                              ? TruncationVariant::contact
                              : TruncationVariant::phases_without_second_order);
+      const std::string coarsest = values.get("Solver/Coarsest solver");
+      solver.coarsest_method =
+        (coarsest == "automatic"  ? CoarsestMethod::automatic
+           : coarsest == "direct" ? CoarsestMethod::direct
+                                  : CoarsestMethod::algebraic_multigrid);
       solver.local_solver =
         (values.get("Solver/Local solver") == "secular equation"
            ? LocalSolver::secular_equation

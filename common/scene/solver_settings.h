@@ -35,6 +35,16 @@ namespace Friction
     W
   };
 
+  /**
+   * How the coarsest level is solved.
+   */
+  enum class CoarsestMethod
+  {
+    automatic,          ///< whichever is quicker for its number of unknowns
+    direct,             ///< by a sparse factorisation
+    algebraic_multigrid ///< by conjugate gradients with algebraic multigrid
+  };
+
   enum class TruncationVariant
   {
     phases,                     ///< stick: all components; slip: the normal one
@@ -64,6 +74,7 @@ namespace Friction
     Cycle             cycle             = Cycle::V;
     TruncationVariant truncation        = TruncationVariant::phases;
     LocalSolver       local_solver      = LocalSolver::secular_equation;
+    CoarsestMethod    coarsest_method   = CoarsestMethod::automatic;
 
     /// Relaxation sweeps on the leaf mesh before and after the coarse
     /// correction.

@@ -71,7 +71,8 @@ namespace Friction
              hierarchy,
              problem.constraints,
              settings.cycle,
-             settings.coarse_smoothing_steps)
+             settings.coarse_smoothing_steps,
+             settings.coarsest_method)
   {}
 
 

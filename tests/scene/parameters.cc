@@ -83,6 +83,7 @@ main()
               << (solver.algorithm == settings.algorithm &&
                   solver.coarse_correction == settings.coarse_correction &&
                   solver.cycle == settings.cycle &&
+                  solver.coarsest_method == settings.coarsest_method &&
                   solver.truncation == settings.truncation &&
                   solver.local_solver == settings.local_solver &&
                   solver.smoothing_steps == settings.smoothing_steps &&
