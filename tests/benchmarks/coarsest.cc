@@ -56,7 +56,7 @@ namespace Benchmark
             continue;
           }
         timer.restart();
-        CoarsestSolver<dim> coarsest(d.dof_handler, matrices, method);
+        CoarsestSolver<dim> coarsest(*d.hierarchy, matrices, method);
         if (!is_direct)
           coarsest.solve(c, rhs); // makes the hierarchy
         const double first = timer.wall_time();
