@@ -212,9 +212,11 @@ namespace StepFriction2d
 
   // @sect4{ContactProblem::make_coarse_mesh}
 
-  // The mesh is a matter of the scene. The coarsest level is solved directly,
-  // so it should be as coarse as the geometry allows; whatever else is refined
-  // globally at the start only has the first level begin on a finer mesh.
+  // The mesh is a matter of the scene. The coarsest level is solved directly as
+  // long as it is small, so it should be as coarse as the geometry allows; for
+  // a large mesh from a file there is algebraic multigrid. Whatever else is
+  // refined globally at the start only has the first level begin on a finer
+  // mesh.
   template <int dim>
   void
   ContactProblem<dim>::make_coarse_mesh()
