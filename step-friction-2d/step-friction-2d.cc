@@ -193,9 +193,11 @@ namespace StepFriction2d
 
   // @sect4{ContactProblem::make_first_mesh}
 
-  // The mesh is a matter of the scene. The coarsest level is solved directly,
-  // so it should be as coarse as the geometry allows; whatever else is refined
-  // globally at the start only has the first level begin on a finer mesh.
+  // The mesh is a matter of the scene. The coarsest level is solved directly as
+  // long as it is small, so it should be as coarse as the geometry allows; for
+  // a large mesh from a file there is algebraic multigrid. Whatever else is
+  // refined globally at the start only has the first level begin on a finer
+  // mesh.
   //
   // A checkpoint holds refinements, not vertices. So the coarse mesh has to be
   // made in either case, and p4est then refines it as it was, and distributes

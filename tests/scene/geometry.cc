@@ -147,6 +147,22 @@ namespace
   }
 } // namespace
 
+template <int dim>
+void
+write_mesh(const std::vector<std::string> &overrides,
+           const std::string              &file_name)
+{
+  Triangulation<dim> mesh;
+  Scene<dim>(parameters(overrides)).make_coarse_mesh(mesh);
+  GridOut grid_out;
+  grid_out.set_flags(GridOutFlags::Msh(true, true));
+  std::ofstream file(file_name);
+  file.precision(17);
+  grid_out.write_msh(mesh, file);
+}
+
+
+
 int
 main(int argc, char **argv)
 {
@@ -163,22 +179,25 @@ main(int argc, char **argv)
             "Boundary conditions/Displacement=5: 0, 0, 0"});
 
   // A mesh file, and a file that is none.
-  {
-    Triangulation<2> mesh;
-    Scene<2>(parameters({})).make_coarse_mesh(mesh);
-    GridOutFlags::Msh flags(true, true);
-    GridOut           grid_out;
-    grid_out.set_flags(flags);
-    std::ofstream file("square.msh");
-    grid_out.write_msh(mesh, file);
-    std::ofstream("bad.msh") << "nonsense\n";
-  }
+  write_mesh<2>({}, "square.msh");
+  write_mesh<3>({"Scene/Subdivisions=2, 2, 3",
+                 "Scene/Size=1, 2, 3",
+                 "Scene/Distortion=0.3",
+                 "Boundary conditions/Displacement=5: 0, 0, 0"},
+                "box.msh");
+  std::ofstream("bad.msh") << "nonsense\n";
   std::ofstream("triangle.msh")
     << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
        "$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n"
        "$Elements\n1\n1 2 2 0 0 1 2 3\n$EndElements\n";
   print<2>({"Scene/Geometry=mesh file", "Scene/Mesh file=square.msh"});
+  print<3>({"Scene/Geometry=mesh file",
+            "Scene/Mesh file=box.msh",
+            "Boundary conditions/Displacement=5: 0, 0, 0"});
   check<2>({"Scene/Geometry=mesh file", "Scene/Mesh file=triangle.msh"});
+  check<3>({"Scene/Geometry=mesh file",
+            "Scene/Mesh file=square.msh",
+            "Boundary conditions/Displacement=3: 0, 0, 0"});
   check<2>({"Scene/Geometry=mesh file", "Scene/Mesh file=bad.msh"});
   check<2>({"Scene/Geometry=mesh file", "Scene/Mesh file=no.msh"});
 
