@@ -7,8 +7,10 @@
 using namespace Friction;
 
 int
-main()
+main(int argc, char *argv[])
 {
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+
   Console console(std::cout, Console::Times::hidden);
   for (unsigned int l = 0; l < 10; l += 3)
     {
@@ -28,6 +30,13 @@ main()
       if (l == 3)
         console.note("Warning: a remark between the rows.");
     }
+
+  // A run that is continued prints again what it has printed.
+  std::cout << "repeated" << std::endl;
+  Console                  repeated(std::cout, Console::Times::hidden);
+  std::vector<LevelRecord> levels(2);
+  levels[1].level = 1;
+  repeated.repeat(levels, console.notes());
 
   Console silent(std::cout, Console::Times::shown, true);
   silent.level_complete(LevelRecord());
