@@ -14,7 +14,7 @@ namespace Friction
   struct LevelHierarchy<dim>::LeafInformation
   {
     std::vector<unsigned char> coarsest_around; ///< level of active cells
-    VectorType                 level_nodes;     ///< on levels f and f-1
+    std::vector<double>        level_nodes;     ///< two: on levels f and f-1
   };
 
 
@@ -157,7 +157,7 @@ namespace Friction
             finest_levels[node] = std::max(finest_levels[node], level);
           }
 
-    leaf.level_nodes.reinit(constraints.partitioner());
+    leaf.level_nodes.assign(2 * constraints.n_nodes(), 0.);
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
         for (const unsigned int v : cell->vertex_indices())
@@ -167,11 +167,11 @@ namespace Friction
             const int level = cell->level();
             if (level != finest_levels[node])
               continue;
-            leaf.level_nodes.local_element(dim * node) =
+            leaf.level_nodes[2 * node] =
               1 + cell->mg_vertex_dof_index(level, v, 0) / dim;
             if (level > 0 &&
                 cell->parent()->vertex_index(v) == cell->vertex_index(v))
-              leaf.level_nodes.local_element(dim * node + 1) =
+              leaf.level_nodes[2 * node + 1] =
                 1 + cell->parent()->mg_vertex_dof_index(level - 1, v, 0) / dim;
           }
 
@@ -254,7 +254,7 @@ namespace Friction
         {
           const bool         is_finest = (finest_levels[i] == k);
           const unsigned int number    = static_cast<unsigned int>(
-            leaf.level_nodes.local_element(dim * i + (is_finest ? 0 : 1)));
+            leaf.level_nodes[2 * i + (is_finest ? 0 : 1)]);
           Assert(number > 0 || !is_finest, ExcInternalError());
           if (number == 0)
             continue;
@@ -546,7 +546,7 @@ namespace Friction
                 if (constraints.is_prescribed(i, d))
                   bits |= 1u << d;
               const unsigned int node = constraints.is_hanging(i)
-                ? level.nodes.add(leaf.level_nodes.local_element(dim * i) - 1)
+                ? level.nodes.add(leaf.level_nodes[2 * i] - 1)
                 : finest_nodes[i];
               attributes.resize(level.n_local_nodes(), 0.);
               attributes[node] =
