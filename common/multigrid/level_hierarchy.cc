@@ -178,18 +178,16 @@ namespace Friction
     GhostExchange exchange(constraints.numbering(),
                            all_ghosts(constraints.numbering()));
     exchange.collect(
-      leaf.level_nodes.begin(), dim, GhostExchange::Combine::maximum);
-    exchange.update(leaf.level_nodes.begin(), dim);
+      leaf.level_nodes.data(), 2, GhostExchange::Combine::maximum);
+    exchange.update(leaf.level_nodes.data(), 2);
 
-    VectorType levels_around(constraints.partitioner());
-    for (unsigned int node = 0; node < constraints.n_owned_nodes(); ++node)
-      levels_around.local_element(dim * node) = finest_levels[node];
-    exchange.update(levels_around.begin(), dim);
+    std::vector<double> levels_around(finest_levels.begin(),
+                                      finest_levels.end());
+    exchange.update(levels_around.data(), 1);
     for (unsigned int node = constraints.n_owned_nodes();
          node < constraints.n_nodes();
          ++node)
-      finest_levels[node] =
-        static_cast<unsigned char>(levels_around.local_element(dim * node));
+      finest_levels[node] = static_cast<unsigned char>(levels_around[node]);
   }
 
 
@@ -331,25 +329,27 @@ namespace Friction
             collector.add(p->node);
         };
         if (has_finer)
-          for (auto child = level.child_weights.begin(row);
-               child != level.child_weights.end(row);
-               ++child)
-            if (finer_last)
-              {
-                for (std::size_t e = leaf_matrix.row_begin(child->node);
-                     e < leaf_matrix.row_end(child->node);
-                     ++e)
-                  if (finest_levels[leaf_matrix.column(e)] == k + 1)
-                    add_parents(finest_nodes[leaf_matrix.column(e)]);
-              }
-            else
-              {
-                const NodePattern &finer = *levels[k + 1].owned_pattern;
-                for (std::size_t e = finer.starts[child->node];
-                     e < finer.starts[child->node + 1];
-                     ++e)
-                  add_parents(finer.columns[e]);
-              }
+          {
+            for (auto child = level.child_weights.begin(row);
+                 child != level.child_weights.end(row);
+                 ++child)
+              if (finer_last)
+                {
+                  for (std::size_t e = leaf_matrix.row_begin(child->node);
+                       e < leaf_matrix.row_end(child->node);
+                       ++e)
+                    if (finest_levels[leaf_matrix.column(e)] == k + 1)
+                      add_parents(finest_nodes[leaf_matrix.column(e)]);
+                }
+              else
+                {
+                  const NodePattern &finer = *levels[k + 1].owned_pattern;
+                  for (std::size_t e = finer.starts[child->node];
+                       e < finer.starts[child->node + 1];
+                       ++e)
+                    add_parents(finer.columns[e]);
+                }
+          }
 
         if (row < n_owned)
           owned_pattern->append_row(collector.columns);
