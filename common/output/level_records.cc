@@ -55,9 +55,11 @@ namespace Friction
   {
     LevelRecords<dim> records;
 
-    records.costs       = report.costs;
-    LevelRecord &record = records.level;
-    record.level        = level;
+    records.costs         = report.costs;
+    records.matrix_memory = report.matrix_memory;
+    records.solver_memory = report.solver_memory;
+    LevelRecord &record   = records.level;
+    record.level          = level;
     record.cells = dof_handler.get_triangulation().n_global_active_cells();
     record.dofs  = dof_handler.n_dofs();
     record.outer_iterations    = report.outer_iterations;

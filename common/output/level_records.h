@@ -13,7 +13,9 @@ namespace Friction
   struct LevelRecords
   {
     /// What the solver has cost this process.
-    PhaseCosts costs{};
+    PhaseCosts  costs{};
+    std::size_t matrix_memory = 0;
+    std::size_t solver_memory = 0;
 
     LevelRecord              level;
     std::vector<CycleRecord> cycles;

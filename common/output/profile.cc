@@ -1,17 +1,20 @@
 #include <common/output/profile.h>
 #include <common/parallel/reductions.h>
 
+#include <deal.II/base/utilities.h>
+
 #include <algorithm>
+#include <array>
 #include <iomanip>
 #include <sstream>
 
 namespace Friction
 {
+  template <int dim>
   std::string
-  describe_profile(const PhaseCosts  &costs,
-                   const unsigned int n_cycles,
-                   const bool         with_times,
-                   const MPI_Comm     communicator)
+  describe_profile(const LevelRecords<dim> &records,
+                   const bool               with_times,
+                   const MPI_Comm           communicator)
   {
     constexpr unsigned int n_columns = 5;
     std::vector<double>    largest;
@@ -24,7 +27,7 @@ namespace Friction
                       cost.seconds,
                       cost.waiting});
     };
-    for (const PhaseCost &cost : costs)
+    for (const PhaseCost &cost : records.costs)
       {
         append(cost);
         total.messages += cost.messages;
@@ -39,7 +42,7 @@ namespace Friction
     std::ostringstream text;
     text << "         per cycle and process  messages       bytes  reductions"
          << (with_times ? "   seconds of all   waiting" : "");
-    const double cycles = std::max(1u, n_cycles);
+    const double cycles = std::max(1u, records.level.cycles);
     for (unsigned int row = 0; row <= n_solver_phases; ++row)
       {
         const double *value = &largest[n_columns * row];
@@ -55,6 +58,26 @@ namespace Friction
           text << std::setprecision(3) << std::setw(17) << value[3]
                << std::setw(10) << value[4];
       }
+
+    dealii::Utilities::System::MemoryStats stats;
+    dealii::Utilities::System::get_memory_stats(stats);
+    const auto bytes =
+      sum_over_processes(std::array<double, 3>{{1. * records.matrix_memory,
+                                                1. * records.solver_memory,
+                                                1024. * stats.VmHWM}},
+                         communicator);
+    text << std::setprecision(0) << "\n         bytes per dof: leaf matrix "
+         << bytes[0] / records.level.dofs << ", rest of the solver "
+         << bytes[1] / records.level.dofs;
+    if (with_times)
+      text << ", processes at their largest " << bytes[2] / records.level.dofs;
     return text.str();
   }
+
+
+
+  template std::string
+  describe_profile(const LevelRecords<2> &, const bool, const MPI_Comm);
+  template std::string
+  describe_profile(const LevelRecords<3> &, const bool, const MPI_Comm);
 } // namespace Friction

@@ -90,8 +90,7 @@ namespace Friction
     the_console.level_complete(records.level);
     if (parameters.output.profile)
       the_console.note(
-        describe_profile(records.costs,
-                         records.level.cycles,
+        describe_profile(records,
                          parameters.output.times,
                          Compatibility::mpi_communicator(dof_handler)));
     history.add_level(

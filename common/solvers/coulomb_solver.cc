@@ -100,7 +100,9 @@ namespace Friction
                                                force_of_rounding(problem, u));
     if (!(report.certificate.largest() <= settings.certificate_tolerance))
       report.converged = false;
-    report.costs = phase_costs() - before;
+    report.costs         = phase_costs() - before;
+    report.matrix_memory = problem.matrix.memory_consumption();
+    report.solver_memory = iteration.memory_consumption();
     return report;
   }
 

@@ -42,6 +42,11 @@ namespace Friction
     /// What this process has spent on the solution, by phase.
     PhaseCosts costs;
 
+    /// Bytes on this process: of the leaf matrix, and of all the rest that the
+    /// solver keeps while it works.
+    std::size_t matrix_memory = 0;
+    std::size_t solver_memory = 0;
+
     /// The energy of the solution, and its residual f - A u at all nodes.
     double     energy = 0;
     VectorType residual;
