@@ -78,8 +78,8 @@ namespace
 
 
 
-  // Minimises z.Dz/2 - r.z + s|x + z| over x + z <= 1, by coordinates and with
-  // an accuracy far beyond what is tested here.
+  // Minimises z.Dz/2 - r.z + s|x + z| over x + z <= 1, with an accuracy far
+  // beyond what is tested here.
   template <int dim>
   Value<dim>
   local_step(const Matrix<dim> &D,
