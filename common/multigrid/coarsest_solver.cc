@@ -73,7 +73,7 @@ namespace Friction
       for (unsigned int d = 0; d < dim * dim; ++d)
         complements[i][d] -= nulls[i][d];
     GhostExchange(level.numbering(), level.coupled_ghosts())
-      .update(complements.front().data(), dim * dim);
+      .update(reinterpret_cast<double *>(complements.data()), dim * dim);
     for (unsigned int i = 0; i < B.n_rows(); ++i)
       {
         const NodeBlock<dim> Mi        = complements[i];

@@ -21,6 +21,7 @@
 #include <common/multigrid/interface_damping.h>
 #include <common/multigrid/level_matrices.h>
 #include <common/multigrid/monotone_smoother.h>
+#include <common/parallel/phase_costs.h>
 #include <common/parallel/reductions.h>
 #include <common/solvers/coulomb_solver.h>
 
@@ -447,13 +448,25 @@ namespace
            "energies are those that one process finds");
     report(penetration, 1e-15, "iterates are admissible");
 
-    // Several sweeps in a row are the same as one after the other.
+    // Several sweeps in a row are the same as one after the other, with one
+    // exchange each, and so as many messages as there are in an exchange.
     VectorType   v(u);
     ContactState w(state);
+    const auto   n_messages = []() {
+      std::size_t sum = 0;
+      for (const PhaseCost &cost : phase_costs())
+        sum += cost.messages;
+      return sum;
+    };
+    const std::size_t before = n_messages();
     smoother.ghosts().update(v.begin(), dim);
+    const std::size_t in_an_exchange = n_messages() - before;
     typename MonotoneSmoother<dim>::Sweeps what;
     what.n = 3;
     smoother.sweeps(v, d.forces, w, what);
+    report(n_messages() - before == 4 * in_an_exchange ? 0. : 1.,
+           0.,
+           "there is one exchange of ghosts per sweep");
     for (unsigned int step = 0; step < 3; ++step)
       smoother.sweep(u, d.forces, state, false, false);
     double difference = 0;
