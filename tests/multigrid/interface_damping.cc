@@ -216,7 +216,7 @@ namespace
         std::cout << dim << "D, " << n_parts << " parts" << std::endl;
         check_below(result.first, 1e-12, "the energy does not rise");
         check(result.second >= 1. - 1e-6, "and falls as much as promised");
-        check(relax<dim>(n_parts, Damping::none, 20).first > .02,
+        check(relax<dim>(n_parts, Damping::none, 40).first > 1e-3,
               "without damping it rises for some matrices");
       }
     check(relax<dim>(6, Damping::half, 20).first > 1e-3,

@@ -4,6 +4,8 @@
 
 #include <common/scene/scene.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <cmath>
 #include <functional>
 #include <iostream>
@@ -195,8 +197,11 @@ namespace
 } // namespace
 
 int
-main()
+main(int argc, char **argv)
 {
+  // Reading a mesh may be an error of one process, which all have to learn of.
+  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+
   const Tensor<1, 2> long_block({3., 1.}), block({2., 1.});
   check("manufactured", {}, long_block);
   check("manufactured", {"Contact/Friction coefficient=0.8"}, long_block);
