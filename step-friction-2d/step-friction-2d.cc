@@ -501,7 +501,7 @@ namespace StepFriction2d
   //   refined cell for three active ones, so that all of this is worth about
   //   four sweeps over the leaf mesh;
   // - rows of level matrices near nodes whose phase has changed, which after a
-  //   few cycles is nowhere, and a direct solution on the coarsest mesh.
+  //   few cycles is nowhere, and a solution on the coarsest mesh.
   //
   // That is linear in the number of unknowns, provided the coarsest mesh is
   // small and the cycle a V-cycle; W-cycles are not affordable on meshes

@@ -1,4 +1,5 @@
 #include <common/multigrid/algebraic_solver.h>
+#include <common/parallel/phase_costs.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -11,6 +12,16 @@ namespace Friction
   namespace
   {
     constexpr unsigned int maximum_iterations = 200;
+
+    // A reduction like others, to be counted like others.
+    double
+    product(const VectorType &a, const VectorType &b)
+    {
+      if (Utilities::MPI::n_mpi_processes(a.get_mpi_communicator()) > 1)
+        count_reduction();
+      const WaitingScope waiting;
+      return a * b;
+    }
   } // namespace
 
 
@@ -179,7 +190,7 @@ namespace Friction
     precondition(preconditioned, residual);
     project(preconditioned);
     direction        = preconditioned;
-    double       rMr = residual * preconditioned;
+    double       rMr = product(residual, preconditioned);
     const double end = tolerance * tolerance * rMr;
     if (!(rMr > 0.))
       return rMr == 0. ? Outcome::converged : Outcome::broken;
@@ -188,7 +199,7 @@ namespace Friction
       {
         matrix->vmult(image, direction);
         project(image);
-        const double energy = direction * image;
+        const double energy = product(direction, image);
         if (!(energy > 1e-12 * rMr) || !std::isfinite(energy))
           return Outcome::broken;
         const double length = rMr / energy;
@@ -198,7 +209,7 @@ namespace Friction
         precondition(preconditioned, residual);
         project(preconditioned);
         const double rMr_before = rMr;
-        rMr                     = residual * preconditioned;
+        rMr                     = product(residual, preconditioned);
         if (!(rMr >= 0.))
           return Outcome::broken;
         if (rMr <= end)

@@ -19,9 +19,9 @@ namespace Friction
    * Restricted residuals go down, block Gauss-Seidel relaxes each level
    * forwards before and backwards after the coarser levels, so that the V-cycle
    * is a symmetric positive definite operator, and the coarsest level is solved
-   * directly. With local refinement a level sees residuals from two sides:
-   * those of its own leaf nodes, and those restricted from the next finer
-   * level.
+   * by CoarsestSolver. With local refinement a level sees residuals from two
+   * sides: those of its own leaf nodes, and those restricted from the next
+   * finer level.
    *
    * With bounds, every single relaxation keeps the prolonged correction within
    * them: this is the `monotone` coarse correction of the thesis. The bounds of

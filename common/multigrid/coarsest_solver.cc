@@ -1,5 +1,4 @@
 #include <common/multigrid/coarsest_solver.h>
-#include <common/parallel/ghost_exchange.h>
 #include <common/parallel/reductions.h>
 
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
@@ -15,6 +14,8 @@ namespace Friction
     : hierarchy(hierarchy)
     , level_matrices(level_matrices)
     , solver(method, dim)
+    , ghosts(hierarchy.level(0).numbering(),
+             hierarchy.level(0).coupled_ghosts())
   {
     const NodeBlockMatrix<dim> &B = level_matrices.matrix(0);
     const NodeDistribution     &nodes =
@@ -72,8 +73,7 @@ namespace Friction
     for (unsigned int i = 0; i < B.n_rows(); ++i)
       for (unsigned int d = 0; d < dim * dim; ++d)
         complements[i][d] -= nulls[i][d];
-    GhostExchange(level.numbering(), level.coupled_ghosts())
-      .update(reinterpret_cast<double *>(complements.data()), dim * dim);
+    ghosts.update(reinterpret_cast<double *>(complements.data()), dim * dim);
     for (unsigned int i = 0; i < B.n_rows(); ++i)
       {
         const NodeBlock<dim> Mi        = complements[i];

@@ -4,6 +4,7 @@
 #include <common/multigrid/algebraic_solver.h>
 #include <common/multigrid/level_hierarchy.h>
 #include <common/multigrid/level_matrices.h>
+#include <common/parallel/ghost_exchange.h>
 
 #include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
@@ -54,6 +55,7 @@ namespace Friction
     const LevelMatrices<dim>      &level_matrices;
     TrilinosWrappers::SparseMatrix matrix;
     AlgebraicSolver                solver;
+    GhostExchange                  ghosts;
     VectorType                     rhs, solution;
     unsigned int                   version = 0;
 

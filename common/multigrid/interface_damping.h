@@ -41,8 +41,8 @@ namespace Friction
    * obstacle included. What the others do at the same time can raise it by
    * $\tfrac12\delta_i^TL_i\delta_i$. So the energy falls, by a quarter of what
    * the diagonal alone would give at least, if $2E_i\ge L_i-\tfrac34A_{ii}$;
-   * see doc/parallel.md. Within the faces of a regular mesh nothing has to be
-   * added, for most of what a node couples to is its own process'.
+   * see doc/parallel.md. Within the faces of a regular mesh usually nothing
+   * has to be added, for most of what a node couples to is its own process'.
    */
   template <int dim>
   NodeBlock<dim> interface_damping(const NodeBlockMatrix<dim> &A,

@@ -250,8 +250,8 @@ namespace Friction
       if (!constraints.is_hanging(i) &&
           (finest_levels[i] == k || finest_levels[i] == k + 1))
         {
-          const bool         is_finest = (finest_levels[i] == k);
-          const unsigned int number    = static_cast<unsigned int>(
+          const bool       is_finest = (finest_levels[i] == k);
+          const GlobalNode number    = static_cast<GlobalNode>(
             leaf.level_nodes[2 * i + (is_finest ? 0 : 1)]);
           Assert(number > 0 || !is_finest, ExcInternalError());
           if (number == 0)

@@ -124,11 +124,10 @@ namespace Friction
     // changed, counted among those that are its own, and their blocks.
     std::map<unsigned int, std::vector<double>> messages;
     std::map<unsigned int, unsigned int>        counts;
-    std::vector<unsigned int>                   number(outgoing[k].n_rows());
-    std::vector<char>                           changed(number.size(), 0);
+    std::vector<char> changed(outgoing[k].n_rows(), 0);
     for (const unsigned int row : changed_rows)
       changed[outgoing_row_of[k][row - level.n_nodes()]] = 1;
-    for (unsigned int r = 0; r < number.size(); ++r)
+    for (unsigned int r = 0; r < outgoing[k].n_rows(); ++r)
       {
         const unsigned int owner =
           nodes.owner(level.numbering().global(level.outgoing_rows()[r]));

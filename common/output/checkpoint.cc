@@ -129,11 +129,29 @@ namespace Friction
         ghosted[i].update_ghost_values();
         pointers.push_back(&ghosted[i]);
       }
-    together(communicator, sentence + ": is the disk full?", [&]() {
-      parallel::distributed::SolutionTransfer<dim, VectorType> transfer(
-        dof_handler);
-      transfer.prepare_for_serialization(pointers);
-      triangulation.save((part / "mesh").string());
+    const std::uint64_t size = triangulation.n_global_active_cells() *
+      vectors.size() * dof_handler.get_fe().n_dofs_per_cell() * sizeof(double);
+    demand_space((part / "mesh").string(), communicator, size);
+    try
+      {
+        parallel::distributed::SolutionTransfer<dim, VectorType> transfer(
+          dof_handler);
+        transfer.prepare_for_serialization(pointers);
+        triangulation.save((part / "mesh").string());
+      }
+    catch (const std::exception &)
+      {
+        throw_or_abort(communicator, sentence + ": is the disk full?");
+      }
+
+    // Not all who write look whether they could.
+    on_first_process(communicator, [&]() {
+      with_sentence(sentence, [&]() {
+        if (fs::file_size(part / "mesh") == 0 ||
+            fs::file_size(part / "mesh.info") == 0 ||
+            fs::file_size(part / "mesh_fixed.data") < size)
+          throw InputError(sentence + " completely: is the disk full?");
+      });
     });
 
     // From here on the first process acts alone. A directory is a file, too;
@@ -143,12 +161,9 @@ namespace Friction
         for (const auto &entry : fs::directory_iterator(part))
           flush_to_disk(entry.path().string());
         flush_to_disk(part.string());
+        fs::remove_all(path(level) + unfinished);
         if (fs::exists(path(level)))
-          {
-            fs::remove_all(path(level) + unfinished);
-            fs::rename(path(level), path(level) + unfinished);
-            fs::remove_all(path(level) + unfinished);
-          }
+          fs::rename(path(level), path(level) + unfinished);
         fs::rename(part, path(level));
         flush_to_disk(directory.path());
         remove_all_but(path(level));

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <tuple>
 
 namespace Friction
@@ -304,6 +305,7 @@ namespace Friction
                                    const MPI_Comm      communicator)
   {
     const unsigned int rank = Utilities::MPI::this_mpi_process(communicator);
+    remove_old_pieces("body", level, body_files, communicator);
     on_all_processes(communicator, [&]() {
       directory.write(piece_name("body", level, rank),
                       [&](std::ostream &out) { data_out.write_vtu(out); });
@@ -322,6 +324,40 @@ namespace Friction
       directory.write("body.pvd", [&](std::ostream &out) {
         DataOutBase::write_pvd_record(out, body_files);
       });
+    });
+  }
+
+
+
+  // A record must not name pieces of two runs while they are replaced one by
+  // one, and a run on more processes may have left more of them. So what names
+  // them goes first: the entry of the level, then the record.
+  template <int dim>
+  void
+  FieldWriter<dim>::remove_old_pieces(const std::string   &what,
+                                      const unsigned int   level,
+                                      const TimesAndNames &files,
+                                      const MPI_Comm       communicator) const
+  {
+    namespace fs = std::filesystem;
+    on_first_process(communicator, [&]() {
+      if (!fs::exists(directory.file(file_name(what, level) + ".pvtu")))
+        return;
+      if (files.empty())
+        fs::remove(directory.file(what + ".pvd"));
+      else
+        directory.write(what + ".pvd", [&](std::ostream &out) {
+          DataOutBase::write_pvd_record(out, files);
+        });
+      fs::remove(directory.file(file_name(what, level) + ".pvtu"));
+      std::vector<fs::path> pieces;
+      for (const auto &entry : fs::directory_iterator(directory.path()))
+        if (entry.path().extension() == ".vtu" &&
+            entry.path().filename().string().rfind(file_name(what, level) + ".",
+                                                   0) == 0)
+          pieces.push_back(entry.path());
+      for (const fs::path &piece : pieces)
+        fs::remove(piece);
     });
   }
 
@@ -483,6 +519,7 @@ namespace Friction
 
     const MPI_Comm communicator = Compatibility::mpi_communicator(dof_handler);
     const unsigned int rank = Utilities::MPI::this_mpi_process(communicator);
+    remove_old_pieces("contact", level, contact_files, communicator);
     on_all_processes(communicator, [&]() {
       directory.write(
         piece_name("contact", level, rank), [&](std::ostream &out) {

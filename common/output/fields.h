@@ -131,6 +131,11 @@ namespace Friction
 
     using TimesAndNames = std::vector<std::pair<double, std::string>>;
 
+    void remove_old_pieces(const std::string   &what,
+                           const unsigned int   level,
+                           const TimesAndNames &files,
+                           const MPI_Comm       communicator) const;
+
     const RunDirectory               directory;
     const double                     lambda;
     const double                     mu;

@@ -67,7 +67,7 @@ namespace Friction
                                                 1024. * stats.VmHWM}},
                          communicator);
     text << std::setprecision(0) << "\n         bytes per dof: leaf matrix "
-         << bytes[0] / records.level.dofs << ", rest of the solver "
+         << bytes[0] / records.level.dofs << ", smoother and levels "
          << bytes[1] / records.level.dofs;
     if (with_times)
       text << ", processes at their largest " << bytes[2] / records.level.dofs;

@@ -14,7 +14,8 @@ namespace Friction
    * per cycle the messages, bytes and reductions of the process that has most
    * of them, and the seconds of the whole solution, with those spent on waiting
    * for other processes. Then memory, in bytes per degree of freedom: that of
-   * the leaf matrix, of the rest of the solver, and of all processes together
+   * the leaf matrix, of the smoother with the level matrices, and of all
+   * processes together
    * when they had most, which is during assembly. A collective operation; the
    * text is that of all processes.
    *

@@ -146,6 +146,25 @@ namespace Friction
 
 
 
+  // What the file system does not know, quotas for example, is found out too
+  // late; but it is better to know about full disks than about nothing.
+  void
+  demand_space(const std::string  &file_name,
+               const MPI_Comm      communicator,
+               const std::uint64_t size)
+  {
+    on_first_process(communicator, [&]() {
+      std::error_code error;
+      const auto      space = std::filesystem::space(
+        std::filesystem::absolute(file_name).parent_path(), error);
+      if (!error && space.available < size)
+        throw InputError("The file '" + file_name +
+                         "' cannot be written: there is not enough space.");
+    });
+  }
+
+
+
   void
   write_together_then_rename(
     const std::string                                            &final_name,
@@ -161,28 +180,17 @@ namespace Friction
     if (!first)
       file.leave_alone();
 
-    // What the file system does not know, quotas for example, is found out too
-    // late; but it is better to know about full disks than about nothing.
-    on_first_process(communicator, [&]() {
-      std::error_code error;
-      const auto      space = std::filesystem::space(
-        std::filesystem::path(file.name()).parent_path(), error);
-      if (!error && space.available < size)
-        throw InputError("The file '" + final_name +
-                         "' cannot be written: there is not enough space.");
-    });
-
-    std::optional<std::string> error;
+    demand_space(final_name, communicator, size);
     try
       {
         write_to(file.name());
       }
     catch (const std::exception &)
       {
-        error = "The file '" + final_name +
-          "' cannot be written completely: is the disk full?";
+        throw_or_abort(communicator,
+                       "The file '" + final_name +
+                         "' cannot be written completely: is the disk full?");
       }
-    throw_if_any(communicator, error);
     on_first_process(communicator, [&]() { file.rename(); });
   }
 

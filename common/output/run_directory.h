@@ -35,11 +35,19 @@ namespace Friction
                            const std::function<void(std::ostream &)> &write_to);
 
   /**
+   * Throws an InputError on all processes if there are less than @p size bytes
+   * left on the disk that a file is to be written to. Collective.
+   */
+  void demand_space(const std::string  &file_name,
+                    const MPI_Comm      communicator,
+                    const std::uint64_t size);
+
+  /**
    * The same for one file that all processes write together: @p write_to is
    * called by all of them with the same temporary name, the first one renames.
-   * Whatever goes wrong is an InputError on all of them. That the disk is full
-   * is asked for before, since it would be found out in the middle of
-   * collective operations.
+   * That the disk is full is asked for before, and is an InputError on all of
+   * them. What nobody can know before, a quota for example, is found out in the
+   * middle of collective operations and ends all processes.
    *
    * @param size  in bytes, about, of the whole file.
    */

@@ -1,5 +1,7 @@
 #include <common/parallel/collective_error.h>
 
+#include <iostream>
+
 namespace Friction
 {
   void
@@ -15,5 +17,18 @@ namespace Friction
       return;
     throw InputError(Utilities::MPI::broadcast(
       communicator, sentence.value_or(std::string()), first));
+  }
+
+
+
+  void
+  throw_or_abort(const MPI_Comm communicator, const std::string &sentence)
+  {
+    if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1)
+      {
+        std::cerr << "Error: " << sentence << std::endl;
+        MPI_Abort(communicator, 2);
+      }
+    throw InputError(sentence);
   }
 } // namespace Friction

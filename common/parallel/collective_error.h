@@ -23,6 +23,15 @@ namespace Friction
                     const std::optional<std::string> &sentence);
 
   /**
+   * What one process meets in the middle of a collective operation of somebody
+   * else, an MPI file for example, cannot be agreed on, because the others wait
+   * there. Prints the sentence and ends all processes, with the exit status of
+   * bad input. With one process an InputError is thrown.
+   */
+  [[noreturn]] void throw_or_abort(const MPI_Comm     communicator,
+                                   const std::string &sentence);
+
+  /**
    * Run @p f on all processes. An InputError that it throws on some of them is
    * thrown on all, with the same sentence. Without this the others would go on
    * to their next exchange of data, and wait there forever.

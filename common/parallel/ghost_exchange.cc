@@ -46,14 +46,19 @@ namespace Friction
 
 
 
+  // Sends the values of one list of nodes, and gets ready for those of the
+  // other.
   void
-  GhostExchange::communicate(const bool to_owners)
+  GhostExchange::communicate(const double      *values,
+                             const unsigned int values_per_node,
+                             const bool         to_owners)
   {
-    requests.clear();
+    Assert(requests.empty(), ExcMessage("The last exchange is not finished."));
+    n_values = values_per_node;
     for (Neighbour &n : neighbours)
       {
-        n.received.resize(n_values *
-                          (to_owners ? n.owned.size() : n.ghosts.size()));
+        const auto &expected = to_owners ? n.owned : n.ghosts;
+        n.received.resize(n_values * expected.size());
         if (!n.received.empty())
           {
             requests.emplace_back();
@@ -67,18 +72,28 @@ namespace Friction
           }
       }
     for (Neighbour &n : neighbours)
-      if (!n.to_send.empty())
-        {
-          count_message(n.to_send.size() * sizeof(double));
-          requests.emplace_back();
-          MPI_Isend(n.to_send.data(),
-                    n.to_send.size(),
-                    MPI_DOUBLE,
-                    n.rank,
-                    tag,
-                    comm,
-                    &requests.back());
-        }
+      {
+        const auto &nodes = to_owners ? n.ghosts : n.owned;
+        n.to_send.resize(n_values * nodes.size());
+        double *target = n.to_send.data();
+        for (const unsigned int node : nodes)
+          target =
+            std::copy_n(values + static_cast<std::size_t>(n_values) * node,
+                        n_values,
+                        target);
+        if (!n.to_send.empty())
+          {
+            count_message(n.to_send.size() * sizeof(double));
+            requests.emplace_back();
+            MPI_Isend(n.to_send.data(),
+                      n.to_send.size(),
+                      MPI_DOUBLE,
+                      n.rank,
+                      tag,
+                      comm,
+                      &requests.back());
+          }
+      }
   }
 
 
@@ -99,19 +114,7 @@ namespace Friction
   void
   GhostExchange::start(const double *values, const unsigned int values_per_node)
   {
-    Assert(requests.empty(), ExcMessage("The last exchange is not finished."));
-    n_values = values_per_node;
-    for (Neighbour &n : neighbours)
-      {
-        n.to_send.resize(n.owned.size() * n_values);
-        double *target = n.to_send.data();
-        for (const unsigned int node : n.owned)
-          target =
-            std::copy_n(values + static_cast<std::size_t>(n_values) * node,
-                        n_values,
-                        target);
-      }
-    communicate(false);
+    communicate(values, values_per_node, false);
   }
 
 
@@ -151,19 +154,7 @@ namespace Friction
                          const unsigned int values_per_node,
                          const Combine      combine)
   {
-    Assert(requests.empty(), ExcMessage("The last exchange is not finished."));
-    n_values = values_per_node;
-    for (Neighbour &n : neighbours)
-      {
-        n.to_send.resize(n.ghosts.size() * n_values);
-        double *target = n.to_send.data();
-        for (const unsigned int node : n.ghosts)
-          target =
-            std::copy_n(values + static_cast<std::size_t>(n_values) * node,
-                        n_values,
-                        target);
-      }
-    communicate(true);
+    communicate(values, values_per_node, true);
     wait();
     for (const Neighbour &n : neighbours)
       {

@@ -86,7 +86,9 @@ namespace Friction
     std::vector<MPI_Request> requests;
     unsigned int             n_values = 0;
 
-    void communicate(const bool to_owners);
+    void communicate(const double      *values,
+                     const unsigned int values_per_node,
+                     const bool         to_owners);
 
     void wait();
   };

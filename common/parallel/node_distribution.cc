@@ -35,16 +35,4 @@ namespace Friction
       ghosts.push_back(node);
     return entry.first->second;
   }
-
-
-
-  unsigned int
-  NodeNumbering::find(const GlobalNode node) const
-  {
-    if (nodes.is_owned(node))
-      return nodes.local(node);
-    const auto entry = local_of_ghost.find(node);
-    return entry == local_of_ghost.end() ? numbers::invalid_unsigned_int
-                                         : entry->second;
-  }
 } // namespace Friction

@@ -124,9 +124,6 @@ namespace Friction
     /** The local number of a node; if need be the node becomes a ghost. */
     unsigned int add(const GlobalNode node);
 
-    /** The local number of a node, or invalid_unsigned_int if it has none. */
-    unsigned int find(const GlobalNode node) const;
-
     GlobalNode
     global(const unsigned int node) const
     {

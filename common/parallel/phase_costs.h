@@ -16,7 +16,7 @@ namespace Friction
     coarsest,       ///< the problem of the coarsest level
     matrix_updates, ///< linearisation, and level matrices brought up to date
     line_search,    ///< recombination, products with the matrix, line search
-    other           ///< everything else: set-up, norms, certificate
+    other           ///< everything else: norms, energy, certificate
   };
 
   constexpr unsigned int n_solver_phases = 7;

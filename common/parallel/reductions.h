@@ -11,85 +11,67 @@
 namespace Friction
 {
   /**
-   * Sums over all processes that know where they are needed: several numbers
-   * that are wanted at the same time travel together, for a reduction costs as
-   * much for ten numbers as for one. All processes get the same result, to the
-   * last bit, so that decisions based on it are the same everywhere.
+   * Replaces @p n values by what MPI's operation @p operation makes of those of
+   * all processes. Several numbers that are wanted at the same time travel
+   * together, for a reduction costs as much for ten numbers as for one. All
+   * processes get the same result, to the last bit, so that decisions based on
+   * it are the same everywhere. None of the values must be NaN.
    */
-  template <std::size_t n>
-  std::array<double, n>
-  sum_over_processes(const std::array<double, n> &values, const MPI_Comm comm)
+  inline void
+  reduce_over_processes(double        *values,
+                        const int      n,
+                        const MPI_Op   operation,
+                        const MPI_Comm comm)
   {
-    std::array<double, n> result = values;
-    if (dealii::Utilities::MPI::n_mpi_processes(comm) > 1)
-      {
-        count_reduction();
-        const WaitingScope waiting;
-        MPI_Allreduce(
-          values.data(), result.data(), n, MPI_DOUBLE, MPI_SUM, comm);
-      }
-    return result;
+    if (dealii::Utilities::MPI::n_mpi_processes(comm) == 1)
+      return;
+    count_reduction();
+    const WaitingScope waiting;
+    MPI_Allreduce(MPI_IN_PLACE, values, n, MPI_DOUBLE, operation, comm);
   }
 
-  /** The same for a number of values that is not known in advance. */
+  /** The sums over all processes. */
+  template <std::size_t n>
+  std::array<double, n>
+  sum_over_processes(std::array<double, n> values, const MPI_Comm comm)
+  {
+    reduce_over_processes(values.data(), n, MPI_SUM, comm);
+    return values;
+  }
+
   inline void
   sum_over_processes(std::vector<double> &values, const MPI_Comm comm)
   {
-    if (dealii::Utilities::MPI::n_mpi_processes(comm) > 1)
-      {
-        count_reduction();
-        const WaitingScope waiting;
-        MPI_Allreduce(MPI_IN_PLACE,
-                      values.data(),
-                      values.size(),
-                      MPI_DOUBLE,
-                      MPI_SUM,
-                      comm);
-      }
+    reduce_over_processes(values.data(), values.size(), MPI_SUM, comm);
   }
 
   inline double
-  sum_over_processes(const double value, const MPI_Comm comm)
+  sum_over_processes(double value, const MPI_Comm comm)
   {
-    return sum_over_processes(std::array<double, 1>{{value}}, comm)[0];
+    reduce_over_processes(&value, 1, MPI_SUM, comm);
+    return value;
   }
 
-  /** The largest values on any process; none must be NaN. */
+  /** The largest values on any process. */
   template <std::size_t n>
   std::array<double, n>
-  max_over_processes(const std::array<double, n> &values, const MPI_Comm comm)
+  max_over_processes(std::array<double, n> values, const MPI_Comm comm)
   {
-    std::array<double, n> result = values;
-    if (dealii::Utilities::MPI::n_mpi_processes(comm) > 1)
-      {
-        count_reduction();
-        const WaitingScope waiting;
-        MPI_Allreduce(
-          values.data(), result.data(), n, MPI_DOUBLE, MPI_MAX, comm);
-      }
-    return result;
+    reduce_over_processes(values.data(), n, MPI_MAX, comm);
+    return values;
   }
 
   inline void
   max_over_processes(std::vector<double> &values, const MPI_Comm comm)
   {
-    if (dealii::Utilities::MPI::n_mpi_processes(comm) > 1)
-      {
-        count_reduction();
-        const WaitingScope waiting;
-        MPI_Allreduce(MPI_IN_PLACE,
-                      values.data(),
-                      values.size(),
-                      MPI_DOUBLE,
-                      MPI_MAX,
-                      comm);
-      }
+    reduce_over_processes(values.data(), values.size(), MPI_MAX, comm);
   }
 
   inline double
-  max_over_processes(const double value, const MPI_Comm comm)
+  max_over_processes(double value, const MPI_Comm comm)
   {
-    return max_over_processes(std::array<double, 1>{{value}}, comm)[0];
+    reduce_over_processes(&value, 1, MPI_MAX, comm);
+    return value;
   }
 
   /** Whether it is true on any process. */

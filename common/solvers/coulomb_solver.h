@@ -42,8 +42,8 @@ namespace Friction
     /// What this process has spent on the solution, by phase.
     PhaseCosts costs;
 
-    /// Bytes on this process: of the leaf matrix, and of all the rest that the
-    /// solver keeps while it works.
+    /// Bytes on this process: of the leaf matrix, and of smoother, level
+    /// matrices and vectors of the levels.
     std::size_t matrix_memory = 0;
     std::size_t solver_memory = 0;
 

@@ -233,6 +233,7 @@ namespace Friction
     Values       alphas{{0., largest, guess, .5 * guess}};
     Values       d   = derivatives(alphas);
     double       low = 0., high = largest, d_low = d[0], d_high = d[1];
+    double       last_width = std::numeric_limits<double>::infinity();
     if (!(d_low < 0.))
       return 0.;
     if (d_high <= 0.)
@@ -257,13 +258,23 @@ namespace Friction
         const double width = high - low;
         if (width <= 1e-12 * high)
           break;
-        const double trial =
-          std::min(high, std::max(low, low - d_low * width / (d_high - d_low)));
-        alphas = {{trial,
-                   std::max(low, trial - .01 * width),
-                   std::min(high, trial + .01 * width),
-                   .5 * (low + high)}};
-        d      = derivatives(alphas);
+        if (width > .25 * last_width)
+          // Regula falsi does not do at a kink.
+          alphas = {{low + .2 * width,
+                     low + .4 * width,
+                     low + .6 * width,
+                     low + .8 * width}};
+        else
+          {
+            const double trial = std::min(
+              high, std::max(low, low - d_low * width / (d_high - d_low)));
+            alphas = {{trial,
+                       std::max(low, trial - .01 * width),
+                       std::min(high, trial + .01 * width),
+                       .5 * (low + high)}};
+          }
+        last_width = width;
+        d          = derivatives(alphas);
       }
     return low;
   }

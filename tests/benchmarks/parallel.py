@@ -50,8 +50,8 @@ def run(dim, scene, n_processes, *entries):
                        r" +([\d.]+)$", line)
         if row:
             profile[row[1]] = [float(value) for value in row.groups()[1:]]
-        memory = re.match(r"         bytes per dof: leaf matrix (\d+), rest of "
-                          r"the solver (\d+), processes at their largest (\d+)",
+        memory = re.match(r"         bytes per dof: leaf matrix (\d+), smoother "
+                          r"and levels (\d+), processes at their largest (\d+)",
                           line)
         if memory:
             profile["memory"] = [int(value) for value in memory.groups()]
@@ -140,7 +140,7 @@ def communication_part():
 def largest_part():
     print("The largest problems for 24 GiB, on two processes.\n")
     print("scene            dofs  cycles  solve s  set-up s   bytes per dof: "
-          "leaf matrix  solver  largest")
+          "leaf matrix  levels  largest")
     cases = [(2, "block", ["Scene/Subdivisions=11, 11",
                            "Refinement/Initial refinements=7",
                            "Refinement/Levels=1"]),

@@ -426,6 +426,20 @@ namespace
       return result;
     };
 
+    // With many processes there must be nodes that need damping, or nothing is
+    // tested.
+    double n_damped = 0;
+    for (unsigned int i = 0; i < d.matrix.n_rows(); ++i)
+      n_damped += interface_damping(d.matrix, i) != zero_block<dim>();
+    n_damped = sum_over_processes(n_damped, MPI_COMM_WORLD);
+    if (dim == 3)
+      report(Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) >= 4 &&
+                 n_damped == 0
+               ? 1.
+               : 0.,
+             0.,
+             "there are nodes that are damped, if there are many processes");
+
     smoother.ghosts().update(u.begin(), dim);
     double energy = functional.energy(u, state), rise = 0, disagreement = 0,
            penetration = functional.largest_penetration(u), fall = 0;
@@ -474,6 +488,46 @@ namespace
       difference =
         std::max(difference, std::abs(u.local_element(i) - v.local_element(i)));
     report(difference, 0., "three sweeps in a row are three sweeps");
+  }
+
+
+
+  // The whole iteration with given normal forces, corrections included.
+  template <int dim>
+  void
+  check_monotonicity(const Problem<dim> &all, const unsigned int seed)
+  {
+    const auto                &d       = *all.discretization;
+    const DiscreteProblem<dim> problem = {d.matrix,
+                                          d.forces,
+                                          *d.constraints,
+                                          *d.contact,
+                                          FrictionLaw::tresca,
+                                          d.friction_coefficient};
+    for (const auto correction :
+         {CoarseCorrection::truncated, CoarseCorrection::monotone})
+      {
+        SolverSettings settings;
+        settings.coarse_correction = correction;
+        CoulombSolver<dim> solver(*d.hierarchy, problem, settings);
+        VectorType         u = d.admissible_start();
+        ContactState       state(d.contact->size(), true);
+        for (unsigned int p = 0; p < d.contact->size(); ++p)
+          {
+            Random random = random_at((*d.contact)[p].point, seed + 1);
+            state.set_normal_force(p, random(0., .01));
+          }
+        const SolverReport result = solver.solve(u, state);
+        double             rise   = 0;
+        for (unsigned int i = 1; i < result.cycles.size(); ++i)
+          rise = std::max(
+            rise, result.cycles[i].energy - result.cycles[i - 1].energy);
+        const std::string name =
+          correction == CoarseCorrection::truncated ? "truncated" : "monotone";
+        report(rise / std::abs(result.energy),
+               1e-13,
+               "with given friction no cycle raises the energy, " + name);
+      }
   }
 
 
@@ -552,6 +606,7 @@ namespace
     compare_level_matrices(all, alone, seed);
     check_cycle(all, seed);
     check_sweeps(all, alone, seed);
+    check_monotonicity(all, seed);
     check_solution(all, alone);
   }
 } // namespace

@@ -8,9 +8,9 @@
 //
 // With the damping of interface_damping() the energy falls by at least a
 // quarter of what the diagonal alone gives, sum_i d_i.D_i d_i/8 for steps d;
-// without it, it rises for most matrices. The bound is sharp: where every node
-// is a part of its own, and half of the damping is left out, there are matrices
-// for which the energy rises.
+// without it, it rises for some matrices. There is not much to be left out:
+// where every node is a part of its own, half of the damping is too little for
+// some.
 
 #include <common/multigrid/interface_damping.h>
 

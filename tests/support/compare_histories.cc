@@ -1,13 +1,16 @@
 // Compares the protocols of two runs of the same scene, the second of them on
 // more processes: the same levels, the same numbers of cells, unknowns, and
 // nodes in contact and sticking, energies to ten digits, and at most two cycles
-// more per outer iteration.
+// more per level (with Algorithm 2: per outer iteration, each of which is a
+// solution of its own). On meshes with fewer than 300 unknowns per process,
+// where next to all nodes are at an interface, it may be half as many more.
 //
-// Usage: compare_histories HISTORY HISTORY
+// Usage: compare_histories HISTORY HISTORY PROCESSES
 
 #include <deal.II/base/hdf5.h>
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <string>
@@ -18,7 +21,7 @@ main(int argc, char **argv)
 {
   using namespace dealii;
   Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  AssertThrow(argc == 3, ExcMessage("Two files are to be compared."));
+  AssertThrow(argc == 4, ExcMessage("Two files are to be compared."));
   const HDF5::File a(argv[1], HDF5::File::FileAccessMode::open);
   const HDF5::File b(argv[2], HDF5::File::FileAccessMode::open);
   const auto column = [](const HDF5::File &file, const std::string &name) {
@@ -48,9 +51,11 @@ main(int argc, char **argv)
           }
     }
   const auto x = column(a, "cycles"), y = column(b, "cycles"),
-             outer = column(a, "outer_iterations");
+             outer = column(a, "outer_iterations"), dofs = column(a, "dofs");
+  const double n = std::stod(argv[3]);
   for (unsigned int i = 0; i < x.size(); ++i)
-    if (y[i] > x[i] + 2 * outer[i])
+    if (y[i] >
+        x[i] + (dofs[i] < 300 * n ? std::max(2., x[i] / 2) : 2.) * outer[i])
       {
         std::cout << "FAILED: " << y[i] << " cycles instead of " << x[i]
                   << " on level " << i << std::endl;

@@ -68,7 +68,7 @@ for n in "$@"; do
   fi
 
   if [ "$n" -ne 1 ] &&
-    ! "$compare" "$work/results-1/history.h5" "$results/history.h5"; then
+    ! "$compare" "$work/results-1/history.h5" "$results/history.h5" "$n"; then
     exit 1
   fi
 done
