@@ -68,8 +68,8 @@ def scenes_part():
     for dim in (2, 3):
         for path in sorted(glob.glob(os.path.join(scenes[dim], "*.prm"))):
             name = os.path.splitext(os.path.basename(path))[0]
-            limit = "Refinement/Maximum dofs=" + ("20000" if dim == 2
-                                                  else "30000")
+            limit = "Refinement/Maximum dofs=" + ("10000" if dim == 2
+                                                  else "10000")
             one = None
             for n in (1, 2, 4, 8):
                 levels, _ = run(dim, name, n, limit)
@@ -120,10 +120,10 @@ def communication_part():
           "   leaf sweeps: bytes")
     cases = [(2, "hertz", ["Refinement/Strategy=uniform",
                            "Refinement/Estimate error=false",
-                           "Refinement/Maximum dofs=100000000"], (4, 5, 6, 7)),
+                           "Refinement/Maximum dofs=100000000"], (4, 5, 6)),
              (3, "block", ["Refinement/Estimate error=false",
                            "Refinement/Initial refinements=1",
-                           "Refinement/Maximum dofs=100000000"], (2, 3, 4, 5))]
+                           "Refinement/Maximum dofs=100000000"], (2, 3, 4))]
     for dim, scene, entries, refinements in cases:
         for levels_wanted in refinements:
             for n in (2, 4, 8):

@@ -56,7 +56,7 @@ for dim, scene, timed in ((2, "hertz", "hertz"), (3, "block", "cylinder")):
           f"{reductions:.0f} reductions")
     print("       dofs  processes  levels      work   latency  bandwidth  "
           "reductions  coarsest   cycle in ms")
-    for dofs, processes in ((1e9, 1e3), (1e9, 1e4), (1e9, 1e5), (1e10, 1e5)):
+    for dofs, processes in ((1e9, 1e3), (1e9, 1e4), (1e9, 1e5), (4e9, 1e5)):
         levels = 1 + math.ceil(math.log(dofs / COARSEST, 2 ** dim))
         terms = [work * dofs / processes,
                  LATENCY * (slope * levels + intercept) * NEIGHBOURS[dim],

@@ -90,7 +90,7 @@ namespace
     // Proximal gradient steps, projected by alternation (Dykstra).
     const double L = D.operatorNorm();
     Value<dim>   y = x;
-    for (unsigned int step = 0; step < 20000; ++step)
+    for (unsigned int step = 0; step < 5000; ++step)
       {
         const Value<dim> target = y - (D * (y - x) - r) / L;
         Value<dim> p = target, q1 = Value<dim>::Zero(), q2 = Value<dim>::Zero();
