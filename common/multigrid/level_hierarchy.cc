@@ -31,17 +31,6 @@ namespace Friction
 
   namespace
   {
-    std::vector<unsigned int>
-    all_ghosts(const NodeNumbering &numbering)
-    {
-      std::vector<unsigned int> ghosts;
-      for (unsigned int i = numbering.n_owned(); i < numbering.size(); ++i)
-        ghosts.push_back(i);
-      return ghosts;
-    }
-
-
-
     void
     sort_and_make_unique(std::vector<unsigned int> &numbers)
     {
@@ -176,7 +165,7 @@ namespace Friction
           }
 
     GhostExchange exchange(constraints.numbering(),
-                           all_ghosts(constraints.numbering()));
+                           constraints.numbering().all_ghosts());
     exchange.collect(
       leaf.level_nodes.data(), 2, GhostExchange::Combine::maximum);
     exchange.update(leaf.level_nodes.data(), 2);
@@ -562,7 +551,7 @@ namespace Friction
                   value         = std::max(value, finer_attributes[node]);
                 }
           }
-        GhostExchange exchange(level.nodes, all_ghosts(level.nodes));
+        GhostExchange exchange(level.nodes, level.nodes.all_ghosts());
         exchange.collect(attributes.data(), 1, GhostExchange::Combine::maximum);
 
         level.edge.resize(n_owned);

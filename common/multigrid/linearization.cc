@@ -104,9 +104,7 @@ namespace Friction
     std::vector<double> number(leaf.size(), 0.);
     for (unsigned int p = 0; p < contact.size(); ++p)
       number[contact[p].node] = 1. + numbering.distribution().global(p);
-    std::vector<unsigned int> ghosts;
-    for (unsigned int node = leaf.n_owned(); node < leaf.size(); ++node)
-      ghosts.push_back(node);
+    const std::vector<unsigned int> ghosts = leaf.all_ghosts();
     GhostExchange(leaf, ghosts).update(number.data(), 1);
 
     std::vector<unsigned int> contact_ghosts;

@@ -1,6 +1,7 @@
 #include <common/parallel/node_distribution.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace Friction
 {
@@ -34,5 +35,15 @@ namespace Friction
     if (entry.second)
       ghosts.push_back(node);
     return entry.first->second;
+  }
+
+
+
+  std::vector<unsigned int>
+  NodeNumbering::all_ghosts() const
+  {
+    std::vector<unsigned int> numbers(ghosts.size());
+    std::iota(numbers.begin(), numbers.end(), nodes.n_owned());
+    return numbers;
   }
 } // namespace Friction

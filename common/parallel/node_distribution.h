@@ -124,6 +124,9 @@ namespace Friction
     /** The local number of a node; if need be the node becomes a ghost. */
     unsigned int add(const GlobalNode node);
 
+    /** The local numbers of all ghosts. */
+    std::vector<unsigned int> all_ghosts() const;
+
     GlobalNode
     global(const unsigned int node) const
     {
