@@ -47,8 +47,8 @@
 #include <common/program/command_line.h>
 #include <common/scene/parameters.h>
 #include <common/scene/scene.h>
-#include <common/solvers/coulomb_solver.h>
 #include <common/solvers/initial_guess.h>
+#include <common/solvers/safeguarded_solver.h>
 
 #include <iostream>
 #include <memory>
@@ -560,7 +560,7 @@ namespace StepFriction2d
     // relative to the largest nodal force and lengths to the largest
     // displacement or gap. Without a small certificate
     // <code>report.converged</code> is false.
-    CoulombSolver<dim> solver(hierarchy, problem, parameters.solver);
+    SafeguardedSolver<dim> solver(hierarchy, problem, parameters.solver);
     setup_seconds += timer.wall_time();
 
     timer.restart();

@@ -42,8 +42,8 @@
 #include <common/program/command_line.h>
 #include <common/scene/parameters.h>
 #include <common/scene/scene.h>
-#include <common/solvers/coulomb_solver.h>
 #include <common/solvers/initial_guess.h>
+#include <common/solvers/safeguarded_solver.h>
 
 #include <iostream>
 #include <memory>
@@ -607,7 +607,7 @@ namespace StepFriction3d
     // contact nodes only; and about a dozen vectors of three numbers per node,
     // four of which belong to the recombination. What is due to contact and
     // friction is a small part of all this.
-    CoulombSolver<dim> solver(hierarchy, problem, parameters.solver);
+    SafeguardedSolver<dim> solver(hierarchy, problem, parameters.solver);
     setup_seconds += timer.wall_time();
 
     // In this call the time is spent, most of it in sweeps over the leaf mesh,

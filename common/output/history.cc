@@ -173,6 +173,7 @@ namespace Friction
       write("contact_nodes", &LevelRecord::contact_nodes);
       write("sticky_nodes", &LevelRecord::sticky_nodes);
       write("outer_iterations", &LevelRecord::outer_iterations);
+      write("attempts", &LevelRecord::attempts);
       write("cycles", &LevelRecord::cycles);
       write("contraction", &LevelRecord::contraction);
       write("rho_tau", &LevelRecord::rho_tau);

@@ -28,6 +28,9 @@ namespace Friction
     unsigned int outer_iterations = 0;
     unsigned int cycles           = 0;
 
+    /// How many methods the safeguards had to try; one if all was well.
+    unsigned int attempts = 1;
+
     /// Mean contraction of the increments per cycle.
     double contraction = 0.;
 
@@ -68,8 +71,8 @@ namespace Friction
     void
     serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &level &cells &dofs &contact_nodes           &sticky_nodes;
-      archive &outer_iterations &cycles &contraction       &rho_tau;
+      archive &level &cells &dofs &contact_nodes               &sticky_nodes;
+      archive &outer_iterations &cycles &attempts &contraction &rho_tau;
       archive &rho_tau_contraction &energy &normal_force   &tangential_force;
       archive &max_pressure &contact_half_width            &stick_half_width;
       archive &estimated_error &certificate &setup_seconds &solve_seconds;

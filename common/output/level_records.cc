@@ -1,5 +1,6 @@
 #include <common/compatibility.h>
 #include <common/output/level_records.h>
+#include <common/solvers/safeguarded_solver.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/numbers.h>
@@ -69,6 +70,8 @@ namespace Friction
     record.rho_tau             = report.rho_tau_as_printed();
     record.rho_tau_contraction = report.rho_tau_contraction();
     record.certificate         = report.certificate.largest();
+    record.attempts  = std::max<unsigned int>(1, report.attempts.size());
+    records.attempts = describe_attempts(report);
 
     const MPI_Comm communicator = Compatibility::mpi_communicator(dof_handler);
     record.contact_nodes = Utilities::MPI::sum(state.n_contact(), communicator);

@@ -4,6 +4,7 @@
 #include <common/output/history.h>
 #include <common/solvers/coulomb_solver.h>
 
+#include <string>
 #include <vector>
 
 namespace Friction
@@ -16,6 +17,9 @@ namespace Friction
     PhaseCosts  costs{};
     std::size_t matrix_memory = 0;
     std::size_t solver_memory = 0;
+
+    /// What the solver has tried, if that was more than one thing.
+    std::string attempts;
 
     LevelRecord              level;
     std::vector<CycleRecord> cycles;

@@ -88,6 +88,8 @@ namespace Friction
       checkpoints.remove_all();
 
     the_console.level_complete(records.level);
+    if (!records.attempts.empty())
+      the_console.note(records.attempts);
     if (parameters.output.profile)
       the_console.note(
         describe_profile(records,

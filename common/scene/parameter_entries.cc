@@ -274,9 +274,11 @@ namespace Friction
       {"Solver",
        "Coarse correction",
        "truncated",
-       choice("truncated|monotone"),
+       choice("truncated|monotone|algebraic"),
        "'truncated': unconstrained, with a line search. 'monotone': within "
-       "coarse obstacles."},
+       "coarse obstacles. 'algebraic': not by coarse levels, but by solving "
+       "the linearised problem on the leaf mesh, with Trilinos; dear, and "
+       "good where coarse levels are of no help, as with very long cells."},
       {"Solver", "Cycle", "V", choice("V|W"), "Kind of the multigrid cycle."},
       {"Solver",
        "Smoothing steps",
@@ -353,6 +355,19 @@ namespace Friction
        "1",
        make(Patterns::Double(1e-3, 1.)),
        "Damping of the outer iteration; 1 is undamped."},
+      {"Solver",
+       "Mixed outer iterations",
+       "0",
+       make(Patterns::Integer(0, 100)),
+       "Number of previous outer iterations that the normal forces of the next "
+       "one are mixed from (Anderson mixing); 0 for none."},
+      {"Solver",
+       "Safeguards",
+       "true",
+       flag,
+       "Whether to give up an iteration that is getting nowhere, and to try "
+       "others: shorter steps, algebraic corrections, Algorithm 2 with mixed "
+       "normal forces, less friction first."},
 
       {"Output",
        "Directory",

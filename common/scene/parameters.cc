@@ -660,10 +660,11 @@ namespace Friction
       solver.algorithm = (values.get("Solver/Algorithm") == "fixed point"
                             ? Algorithm::fixed_point
                             : Algorithm::gauss_seidel_like);
+      const std::string correction = values.get("Solver/Coarse correction");
       solver.coarse_correction =
-        (values.get("Solver/Coarse correction") == "truncated"
-           ? CoarseCorrection::truncated
-           : CoarseCorrection::monotone);
+        (correction == "truncated"    ? CoarseCorrection::truncated
+           : correction == "monotone" ? CoarseCorrection::monotone
+                                      : CoarseCorrection::algebraic);
       solver.cycle = (values.get("Solver/Cycle") == "V" ? Cycle::V : Cycle::W);
       solver.truncation = (truncation == "phases" ? TruncationVariant::phases
                              : truncation == "contact"
@@ -691,6 +692,9 @@ namespace Friction
       solver.maximum_damping  = values.number("Solver/Maximum damping");
       solver.recombined_steps = values.integer("Solver/Recombined steps");
       solver.outer_damping    = values.number("Solver/Outer damping");
+      solver.mixed_outer_iterations =
+        values.integer("Solver/Mixed outer iterations");
+      solver.safeguards = values.flag("Solver/Safeguards");
     }
 
     {

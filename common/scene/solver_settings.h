@@ -26,7 +26,8 @@ namespace Friction
   enum class CoarseCorrection
   {
     truncated, ///< unconstrained on truncated functions, then a line search
-    monotone   ///< constrained by coarse obstacles, no line search needed
+    monotone,  ///< constrained by coarse obstacles, no line search needed
+    algebraic  ///< the truncated problem solved on the leaf mesh itself
   };
 
   enum class Cycle
@@ -105,6 +106,14 @@ namespace Friction
 
     /// Damping of the normal forces in Algorithm 2; 1 is the plain fixed point.
     double outer_damping = 1.;
+
+    /// Number of previous outer iterations that the normal forces of Algorithm
+    /// 2 are mixed with, see MixedFixedPoint; zero for none.
+    unsigned int mixed_outer_iterations = 0;
+
+    /// Whether to give up an iteration that is getting nowhere, and to try
+    /// others; see SafeguardedSolver.
+    bool safeguards = true;
   };
 } // namespace Friction
 

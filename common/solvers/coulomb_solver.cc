@@ -1,5 +1,6 @@
 #include <common/parallel/reductions.h>
 #include <common/solvers/coulomb_solver.h>
+#include <common/solvers/mixed_fixed_point.h>
 
 #include <algorithm>
 #include <array>
@@ -80,6 +81,7 @@ namespace Friction
         const MultigridResult result =
           iteration.solve(u, state, coulomb, progress);
         report.converged        = result.converged;
+        report.inner_converged  = result.converged;
         report.outer_iterations = 1;
         report.cycles           = result.cycles;
         report.contraction      = result.contraction();
@@ -118,7 +120,13 @@ namespace Friction
                                             ContactState   &state,
                                             const Progress &progress)
   {
-    std::vector<double> given(state.size());
+    // Friction magnifies what is wrong with the normal forces.
+    const double tolerance =
+      settings.outer_tolerance / std::max(1., problem.effective_coefficient());
+    MixedFixedPoint     fixed_point(settings.mixed_outer_iterations,
+                                settings.outer_damping,
+                                problem.communicator());
+    std::vector<double> given(state.size()), found(state.size());
     while (report.outer_iterations < settings.maximum_outer_iterations)
       {
         for (unsigned int p = 0; p < state.size(); ++p)
@@ -130,6 +138,7 @@ namespace Friction
           report.cycles.end(), result.cycles.begin(), result.cycles.end());
         if (report.outer_iterations++ == 0)
           report.contraction = result.contraction();
+        report.inner_converged = result.converged;
         if (!result.converged)
           return;
 
@@ -137,24 +146,22 @@ namespace Friction
         double change = 0, norm = 0;
         for (unsigned int p = 0; p < state.size(); ++p)
           {
-            const double found = state.normal_force(p);
-            change += (found - given[p]) * (found - given[p]);
-            norm += found * found;
+            found[p] = state.normal_force(p);
+            change += (found[p] - given[p]) * (found[p] - given[p]);
+            norm += found[p] * found[p];
           }
         const auto sums = sum_over_processes(
           std::array<double, 2>{{change, norm}}, problem.communicator());
         report.outer_changes.push_back(
           sums[1] > 0 ? std::sqrt(sums[0] / sums[1]) : std::sqrt(sums[0]));
-        if (report.outer_changes.back() <= settings.outer_tolerance)
+        if (report.outer_changes.back() <= tolerance)
           {
             report.converged = true;
             return;
           }
+        const std::vector<double> next = fixed_point.next(given, found);
         for (unsigned int p = 0; p < state.size(); ++p)
-          state.set_normal_force(p,
-                                 given[p] +
-                                   settings.outer_damping *
-                                     (state.normal_force(p) - given[p]));
+          state.set_normal_force(p, next[p]);
       }
   }
 

@@ -5,14 +5,30 @@
 #include <common/parallel/phase_costs.h>
 #include <common/solvers/monotone_multigrid.h>
 
+#include <string>
 #include <vector>
 
 namespace Friction
 {
+  /** One of several attempts at the same problem. */
+  struct SolverAttempt
+  {
+    std::string  name; ///< of the method, for a message
+    unsigned int cycles      = 0;
+    bool         converged   = false;
+    double       certificate = 0; ///< its largest violation
+  };
+
+
+
   /** How the solution of a contact problem with friction went. */
   struct SolverReport
   {
     bool converged = false;
+
+    /// Whether the last multigrid solution has converged, whatever the outer
+    /// iteration and the certificate say.
+    bool inner_converged = false;
 
     /// Multigrid solutions with given normal forces: those of Algorithm 2, one
     /// otherwise.
@@ -24,6 +40,10 @@ namespace Friction
     /// Mean contraction of the increments per cycle (Algorithm 2: in the first
     /// outer iteration).
     double contraction = 0;
+
+    /// What SafeguardedSolver has tried, in this order; empty if the first
+    /// attempt was enough.
+    std::vector<SolverAttempt> attempts;
 
     /// Algorithm 2: the relative change of the normal forces in each outer
     /// iteration.

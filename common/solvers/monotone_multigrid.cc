@@ -49,6 +49,28 @@ namespace Friction
 
 
 
+  bool
+  MultigridResult::stalls(const double       tolerance,
+                          const unsigned int maximum_cycles) const
+  {
+    constexpr unsigned int window = 20;
+    const unsigned int     n      = cycles.size();
+    if (n < 50)
+      return false;
+    const auto smallest = [&](const unsigned int end) {
+      double result = cycles[end - window].increment;
+      for (unsigned int i = end - window; i < end; ++i)
+        result = std::min(result, cycles[i].increment);
+      return result;
+    };
+    const double now  = smallest(n);
+    const double rate = std::pow(now / smallest(n - window), 1. / window);
+    return !(rate < 1) ||
+      std::log(tolerance / now) / std::log(rate) > double(maximum_cycles) - n;
+  }
+
+
+
   template <int dim>
   MonotoneMultigrid<dim>::MonotoneMultigrid(
     const LevelHierarchy<dim>  &hierarchy,
@@ -67,13 +89,19 @@ namespace Friction
                     problem.contact,
                     problem.effective_coefficient(),
                     settings.truncation)
-    , coarse(problem.matrix,
-             hierarchy,
-             problem.constraints,
-             settings.cycle,
-             settings.coarse_smoothing_steps,
-             settings.coarsest_method)
-  {}
+  {
+    if (settings.coarse_correction == CoarseCorrection::algebraic)
+      algebraic = std::make_unique<AlgebraicCorrection<dim>>(
+        problem.matrix, problem.constraints, settings.coarsest_method);
+    else
+      coarse =
+        std::make_unique<CoarseCycle<dim>>(problem.matrix,
+                                           hierarchy,
+                                           problem.constraints,
+                                           settings.cycle,
+                                           settings.coarse_smoothing_steps,
+                                           settings.coarsest_method);
+  }
 
 
 
@@ -196,6 +224,10 @@ namespace Friction
               }
             if (cycle >= settings.maximum_cycles)
               break;
+            if (settings.safeguards &&
+                result.stalls(settings.inner_tolerance,
+                              settings.maximum_cycles))
+              break;
           }
         last_u        = u;
         last_residual = residual;
@@ -232,7 +264,10 @@ namespace Friction
       const Stopwatch updates(costs.matrix_updates,
                               SolverPhase::matrix_updates);
       linearization.update(u, state);
-      costs.n_updated_rows += coarse.update(linearization.truncation());
+      if (algebraic)
+        algebraic->update(linearization.truncation());
+      else
+        costs.n_updated_rows += coarse->update(linearization.truncation());
     }
 
     VectorType r(residual), v(u);
@@ -252,7 +287,7 @@ namespace Friction
         const Stopwatch work(costs.coarse_correction, SolverPhase::transfer);
         VectorType      lower(u), upper(u);
         linearization.bounds(lower, upper, u, state);
-        coarse.apply_within_bounds(v, r, lower, upper);
+        coarse->apply_within_bounds(v, r, lower, upper);
         functional.project(v, u);
         u += v;
         smoother.ghosts().update(u.begin(), dim);
@@ -261,7 +296,10 @@ namespace Friction
 
     {
       const Stopwatch work(costs.coarse_correction, SolverPhase::transfer);
-      coarse.apply(v, r);
+      if (algebraic)
+        algebraic->apply(v, r);
+      else
+        coarse->apply(v, r);
     }
 
     const Stopwatch work(costs.line_search, SolverPhase::line_search);
@@ -347,7 +385,9 @@ namespace Friction
   std::size_t
   MonotoneMultigrid<dim>::memory_consumption() const
   {
-    return smoother.memory_consumption() + coarse.memory_consumption();
+    return smoother.memory_consumption() +
+      (algebraic ? algebraic->memory_consumption()
+                 : coarse->memory_consumption());
   }
 
 

@@ -2,6 +2,7 @@
 #define friction_solvers_monotone_multigrid_h
 
 #include <common/contact/contact_state.h>
+#include <common/multigrid/algebraic_correction.h>
 #include <common/multigrid/coarse_cycle.h>
 #include <common/multigrid/linearization.h>
 #include <common/multigrid/monotone_smoother.h>
@@ -11,6 +12,7 @@
 #include <common/solvers/tresca_functional.h>
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace Friction
@@ -34,6 +36,16 @@ namespace Friction
     /** Mean contraction of the increments, per cycle; zero if there were fewer
      * than two. */
     double contraction() const;
+
+    /**
+     * Whether the iteration is getting nowhere: at the pace of the last twenty
+     * cycles, measured against the twenty before, the increments would not come
+     * down to @p tolerance within @p maximum_cycles altogether. Says no as long
+     * as there are fewer than fifty cycles; contact zones may take that many to
+     * grow into place.
+     */
+    bool stalls(const double       tolerance,
+                const unsigned int maximum_cycles) const;
   };
 
   /** Seconds of this process' wall time by part, and sizes of work; summed over
@@ -55,7 +67,7 @@ namespace Friction
    * The monotone multigrid iteration for contact with friction. One step runs
    * - the leading relaxation, MonotoneSmoother,
    * - phases, truncation and constrained Newton terms, Linearization,
-   * - the coarse correction, CoarseCycle,
+   * - the coarse correction, CoarseCycle or AlgebraicCorrection,
    * - its recombination with the last steps, Recombination,
    * - projection to what is admissible and reverses no slip, and line search,
    *   TrescaFunctional,
@@ -80,7 +92,10 @@ namespace Friction
                       const SolverSettings       &settings);
 
     /**
-     * Iterates until the relative increment is at most the inner tolerance.
+     * Iterates until the relative increment is at most the inner tolerance. An
+     * iteration that would not get there within the maximum number of cycles
+     * is given up early if the settings have safeguards, see
+     * MultigridResult::stalls().
      *
      * @param u  initial guess and solution; must be admissible and have the
      *           prescribed values. Values at hanging nodes are not touched. On
@@ -113,12 +128,6 @@ namespace Friction
       return smoother;
     }
 
-    CoarseCycle<dim> &
-    coarse_correction()
-    {
-      return coarse;
-    }
-
     std::size_t memory_consumption() const;
 
   private:
@@ -127,8 +136,11 @@ namespace Friction
     const TrescaFunctional<dim> functional;
     const MonotoneSmoother<dim> smoother;
     Linearization<dim>          linearization;
-    CoarseCycle<dim>            coarse;
     MultigridCost               costs;
+
+    // One of the two.
+    std::unique_ptr<CoarseCycle<dim>>         coarse;
+    std::unique_ptr<AlgebraicCorrection<dim>> algebraic;
 
     double smallest_norm(const VectorType &u) const;
 

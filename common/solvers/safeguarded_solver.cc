@@ -1,0 +1,265 @@
+#include <common/parallel/reductions.h>
+#include <common/solvers/safeguarded_solver.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Friction
+{
+  namespace
+  {
+    // Without friction, and with given bounds, there is nothing to iterate but
+    // the multigrid method.
+    template <int dim>
+    std::string
+    name_of(const DiscreteProblem<dim> &problem, const SolverSettings &settings)
+    {
+      if (!problem.has_friction() ||
+          problem.friction_law != FrictionLaw::coulomb)
+        return "the multigrid iteration";
+      return settings.algorithm == Algorithm::fixed_point ? "Algorithm 2"
+                                                          : "Algorithm 3";
+    }
+
+
+
+    // Whether phases were still changing when an iteration ended: then it is
+    // not slow coarse corrections that it died of.
+    bool
+    phases_change(const SolverReport &report)
+    {
+      const auto  &cycles = report.cycles;
+      const auto   n      = std::min<std::size_t>(cycles.size(), 10);
+      unsigned int change = 0;
+      for (std::size_t i = cycles.size() - n + 1; i < cycles.size(); ++i)
+        change += (cycles[i].truncated != cycles[i - 1].truncated);
+      return change > 0;
+    }
+
+
+
+    bool
+    is_finite(const VectorType &u)
+    {
+      double infinite = 0;
+      for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+        if (!std::isfinite(u.local_element(i)))
+          infinite = 1;
+      return max_over_processes(infinite, u.get_mpi_communicator()) == 0;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  SafeguardedSolver<dim>::SafeguardedSolver(
+    const LevelHierarchy<dim>  &hierarchy,
+    const DiscreteProblem<dim> &problem,
+    const SolverSettings       &settings)
+    : hierarchy(hierarchy)
+    , problem(problem)
+    , settings(settings)
+    , first(hierarchy, problem, settings)
+  {}
+
+
+
+  template <int dim>
+  SolverReport
+  SafeguardedSolver<dim>::attempt(const std::string  &name,
+                                  CoulombSolver<dim> &solver,
+                                  Iterate            &iterate,
+                                  SolverReport       &all,
+                                  const Progress     &progress) const
+  {
+    const Iterate start  = iterate;
+    SolverReport  report = solver.solve(iterate.u, iterate.state, progress);
+    all.attempts.push_back({name,
+                            static_cast<unsigned int>(report.cycles.size()),
+                            report.converged,
+                            report.certificate.largest()});
+    all.cycles.insert(
+      all.cycles.end(), report.cycles.begin(), report.cycles.end());
+    if (!is_finite(iterate.u))
+      iterate = start;
+    return report;
+  }
+
+
+
+  template <int dim>
+  SolverReport
+  SafeguardedSolver<dim>::solve(VectorType     &u,
+                                ContactState   &state,
+                                const Progress &progress)
+  {
+    if (!settings.safeguards)
+      return first.solve(u, state, progress);
+
+    const PhaseCosts before = phase_costs();
+    const bool       coulomb =
+      problem.has_friction() && problem.friction_law == FrictionLaw::coulomb;
+    const Iterate initial = {u, state};
+    Iterate       iterate = initial;
+    SolverReport  all;
+    SolverReport  report =
+      attempt(name_of(problem, settings), first, iterate, all, progress);
+
+    if (!report.converged)
+      {
+        // Shorter steps, each of its own direction: a line search works with
+        // the normal forces of the moment and may go too far for those that
+        // come.
+        SolverSettings cautious    = settings;
+        cautious.coarse_correction = CoarseCorrection::truncated;
+        cautious.truncation        = TruncationVariant::phases;
+        cautious.maximum_damping   = std::min(.5, settings.maximum_damping);
+        cautious.recombined_steps  = 0;
+        bool slow_corrections      = !coulomb || !phases_change(report);
+        if (!slow_corrections)
+          {
+            CoulombSolver<dim> solver(hierarchy, problem, cautious);
+            report = attempt(name_of(problem, settings) + " with short steps",
+                             solver,
+                             iterate,
+                             all,
+                             progress);
+            slow_corrections = !phases_change(report);
+          }
+        if (!report.converged && slow_corrections)
+          {
+            SolverSettings algebraic    = cautious;
+            algebraic.coarse_correction = CoarseCorrection::algebraic;
+            algebraic.maximum_damping = std::min(1., settings.maximum_damping);
+            CoulombSolver<dim> solver(hierarchy, problem, algebraic);
+            report = attempt(name_of(problem, settings) +
+                               " with algebraic corrections",
+                             solver,
+                             iterate,
+                             all,
+                             progress);
+          }
+      }
+    if (!report.converged && coulomb)
+      report = mixed_algorithm_2(
+        problem.effective_coefficient(), iterate, all, progress);
+    if (!report.converged && coulomb)
+      {
+        Iterate continued = initial;
+        report            = continuation(continued, all, progress);
+        if (report.converged)
+          iterate = continued;
+      }
+
+    u     = iterate.u;
+    state = iterate.state;
+    if (all.attempts.size() > 1)
+      {
+        report.cycles   = all.cycles;
+        report.attempts = all.attempts;
+        report.costs    = phase_costs() - before;
+      }
+    return report;
+  }
+
+
+
+  template <int dim>
+  SolverReport
+  SafeguardedSolver<dim>::mixed_algorithm_2(const double    coefficient,
+                                            Iterate        &iterate,
+                                            SolverReport   &all,
+                                            const Progress &progress) const
+  {
+    SolverSettings mixed         = settings;
+    mixed.algorithm              = Algorithm::fixed_point;
+    mixed.coarse_correction      = CoarseCorrection::truncated;
+    mixed.truncation             = TruncationVariant::phases;
+    mixed.outer_damping          = .5;
+    mixed.mixed_outer_iterations = 10;
+    mixed.maximum_outer_iterations =
+      std::max(200u, settings.maximum_outer_iterations);
+    DiscreteProblem<dim> with_coefficient = {problem.matrix,
+                                             problem.forces,
+                                             problem.constraints,
+                                             problem.contact,
+                                             problem.friction_law,
+                                             coefficient};
+
+    std::string name = "Algorithm 2 with mixed normal forces";
+    if (coefficient < problem.effective_coefficient())
+      name += " and coefficient " + std::to_string(coefficient);
+    SolverReport report;
+    {
+      CoulombSolver<dim> solver(hierarchy, with_coefficient, mixed);
+      report = attempt(name, solver, iterate, all, progress);
+    }
+    if (!report.inner_converged)
+      {
+        mixed.coarse_correction = CoarseCorrection::algebraic;
+        CoulombSolver<dim> solver(hierarchy, with_coefficient, mixed);
+        report = attempt(
+          name + ", algebraic corrections", solver, iterate, all, progress);
+      }
+    return report;
+  }
+
+
+
+  // The coefficient is doubled for as long as that works, and multiplied by the
+  // square root of the last factor where it does not.
+  template <int dim>
+  SolverReport
+  SafeguardedSolver<dim>::continuation(Iterate        &iterate,
+                                       SolverReport   &all,
+                                       const Progress &progress) const
+  {
+    const double target = problem.effective_coefficient();
+    // Where most problems are easy.
+    constexpr double easy            = .25;
+    constexpr double smallest_factor = 1.05;
+    double           solved = 0, factor = 2;
+    SolverReport     report;
+    while (solved < target)
+      {
+        const double coefficient = solved == 0
+          ? std::min(easy, target / 2)
+          : std::min(solved * factor, target);
+        Iterate      next        = iterate;
+        report = mixed_algorithm_2(coefficient, next, all, progress);
+        if (report.converged)
+          {
+            solved  = coefficient;
+            iterate = next;
+          }
+        else
+          {
+            factor = std::sqrt(factor);
+            if (solved == 0 || factor < smallest_factor)
+              break;
+          }
+      }
+    report.converged = report.converged && solved == target;
+    return report;
+  }
+
+
+
+  std::string
+  describe_attempts(const SolverReport &report)
+  {
+    std::string text;
+    for (const SolverAttempt &attempt : report.attempts)
+      text += (text.empty() ? "" : "; ") + attempt.name +
+        (attempt.converged ? " took " : " was given up after ") +
+        std::to_string(attempt.cycles) + " cycles";
+    if (!text.empty())
+      text[0] = std::toupper(static_cast<unsigned char>(text[0]));
+    return text.empty() ? text : text + ".";
+  }
+
+
+
+  template class SafeguardedSolver<2>;
+  template class SafeguardedSolver<3>;
+} // namespace Friction
