@@ -11,6 +11,11 @@ namespace Friction
 {
   namespace
   {
+    // Steps that have to be shortened to less than this are suspicious.
+    constexpr double short_step = .1;
+
+
+
     // Adds the time until its end to a counter; what is sent until then counts
     // for the same part of the work.
     class Stopwatch
@@ -311,9 +316,11 @@ namespace Friction
     // Where a node would have to reverse its slip, the linearisation knows
     // nothing of what comes. A single such node would hold up all others in the
     // line search; it rather stops, and the relaxation decides how it goes on.
+    const VectorType   whole(v);
     const unsigned int n_stopped = functional.keep_slip(v, u, state);
     Products           products  = along(v, Av, residual, n_stopped);
-    if (products.n_changed > 0)
+    const bool         stopped   = products.n_changed > 0;
+    if (stopped)
       {
         multiply(Av, v);
         products = along(v, Av, residual, 0);
@@ -345,9 +352,58 @@ namespace Friction
         v *= rest;
         length *= rest;
       }
+    if (length < short_step && (cut_off || stopped))
+      length = try_whole_correction(v, length, whole, u, residual, state);
     u += v;
     smoother.ghosts().update(u.begin(), dim);
     return length;
+  }
+
+
+
+  // A correction that turns a long thin body around one end of its contact
+  // boundary, and that has been changed at the other end, is no longer a
+  // rotation, and the body is far too stiff for what it has become: hardly
+  // anything is left of it. It is better to go all of it, but only until the
+  // next node touches; the line search knows what it costs that nodes reverse
+  // their slip. Of the two steps the one is taken that lowers the energy more.
+  //
+  // On call v is the first step and length what it is of its correction; on
+  // return they are those of the better step.
+  template <int dim>
+  double
+  MonotoneMultigrid<dim>::try_whole_correction(VectorType         &v,
+                                               const double        length,
+                                               const VectorType   &whole,
+                                               const VectorType   &u,
+                                               const VectorType   &residual,
+                                               const ContactState &state) const
+  {
+    VectorType other(whole), Av(v), moved(v), r(v);
+    multiply(Av, other);
+    const Products products     = along(other, Av, residual, 0);
+    const double   other_length = functional.minimize_along(
+      other,
+      u,
+      state,
+      products.slope,
+      products.curvature,
+      functional.admissible_length(other, u, settings.maximum_damping));
+    other *= other_length;
+    functional.project(other, u);
+
+    const auto energy_after = [&](VectorType &step) {
+      multiply(Av, step);
+      moved = u;
+      moved += step;
+      r = residual;
+      r -= Av;
+      return functional.energy(moved, r, state);
+    };
+    if (!(energy_after(other) < energy_after(v)))
+      return length;
+    v = other;
+    return other_length;
   }
 
 

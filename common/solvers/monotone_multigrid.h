@@ -153,6 +153,13 @@ namespace Friction
                    Recombination<dim> &recombination,
                    CycleInfo          &info);
 
+    double try_whole_correction(VectorType         &v,
+                                const double        length,
+                                const VectorType   &whole,
+                                const VectorType   &u,
+                                const VectorType   &residual,
+                                const ContactState &state) const;
+
     // Av = A v, with the ghosts of v brought up to date.
     void multiply(VectorType &Av, VectorType &v) const;
 
