@@ -47,6 +47,7 @@
 #include <common/program/command_line.h>
 #include <common/scene/parameters.h>
 #include <common/scene/scene.h>
+#include <common/solvers/discretization_stop.h>
 #include <common/solvers/initial_guess.h>
 #include <common/solvers/safeguarded_solver.h>
 
@@ -86,8 +87,8 @@ namespace StepFriction2d
   // matrices that the levels below the leaf mesh get to see. And a cycle costs
   // a fixed number of sweeps over the nodes, with no factorisation but that of
   // the coarsest mesh. All of it is behind the one call of
-  // <code>CoulombSolver::solve()</code> in the function <code>solve()</code>,
-  // and this is where we explain it.
+  // <code>SafeguardedSolver::solve()</code> in the function
+  // <code>solve()</code>, and this is where we explain it.
   template <int dim>
   class ContactProblem
   {
@@ -153,6 +154,7 @@ namespace StepFriction2d
     VectorType                    tractions;
     std::unique_ptr<ContactState> state;
     SolverReport                  report;
+    DiscretizationStop<dim>       stop;
 
     // Where results go: the console, <code>history.h5</code>, files for
     // ParaView, and checkpoints. The constructor creates the directory for
@@ -186,6 +188,7 @@ namespace StepFriction2d
     , mapping(1)
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
+    , stop(parameters.solver)
     , output(parameters, scene, std::cout, FRICTION_VERSION, MPI_COMM_WORLD)
   {}
 
@@ -560,7 +563,15 @@ namespace StepFriction2d
     // relative to the largest nodal force and lengths to the largest
     // displacement or gap. Without a small certificate
     // <code>report.converged</code> is false.
-    SafeguardedSolver<dim> solver(hierarchy, problem, parameters.solver);
+    //
+    // All of this is done by <code>CoulombSolver</code>. The class used here is
+    // its careful owner: when an iteration is getting nowhere, which much
+    // friction or very long cells can bring about, it takes shorter steps, then
+    // corrections that do without coarse levels, then Algorithm 2 with mixed
+    // normal forces, and at last approaches the coefficient of friction from
+    // below. What it had to do, the console says; in most scenes it is nothing.
+    SafeguardedSolver<dim> solver(
+      hierarchy, problem, stop.settings_for(dof_handler.n_dofs()));
     setup_seconds += timer.wall_time();
 
     timer.restart();
@@ -821,6 +832,11 @@ namespace StepFriction2d
         ErrorEstimate estimate;
         if (parameters.refinement.estimate_error || (adaptive && !last))
           estimate = estimate_error();
+        // A solution that is better than its mesh is a waste of time. With
+        // <code>Inner tolerance = discretisation</code> the next one will be
+        // stopped when its own error is small compared with the error of the
+        // mesh, and this is where we learn about the latter.
+        stop.add_estimate(estimate, dof_handler.n_dofs());
 
         record_level(level, estimate);
 

@@ -42,6 +42,7 @@
 #include <common/program/command_line.h>
 #include <common/scene/parameters.h>
 #include <common/scene/scene.h>
+#include <common/solvers/discretization_stop.h>
 #include <common/solvers/initial_guess.h>
 #include <common/solvers/safeguarded_solver.h>
 
@@ -136,6 +137,7 @@ namespace StepFriction3d
     VectorType                    tractions;
     std::unique_ptr<ContactState> state;
     SolverReport                  report;
+    DiscretizationStop<dim>       stop;
 
     // Where results go, and wall times.
     RunOutput<dim> output;
@@ -164,6 +166,7 @@ namespace StepFriction3d
     , mapping(1)
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
+    , stop(parameters.solver)
     , output(parameters, scene, std::cout, FRICTION_VERSION, MPI_COMM_WORLD)
   {}
 
@@ -607,7 +610,8 @@ namespace StepFriction3d
     // contact nodes only; and about a dozen vectors of three numbers per node,
     // four of which belong to the recombination. What is due to contact and
     // friction is a small part of all this.
-    SafeguardedSolver<dim> solver(hierarchy, problem, parameters.solver);
+    SafeguardedSolver<dim> solver(
+      hierarchy, problem, stop.settings_for(dof_handler.n_dofs()));
     setup_seconds += timer.wall_time();
 
     // In this call the time is spent, most of it in sweeps over the leaf mesh,
@@ -856,6 +860,7 @@ namespace StepFriction3d
         ErrorEstimate estimate;
         if (parameters.refinement.estimate_error || (adaptive && !last))
           estimate = estimate_error();
+        stop.add_estimate(estimate, dof_handler.n_dofs());
 
         record_level(level, estimate);
 

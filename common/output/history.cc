@@ -179,6 +179,7 @@ namespace Friction
       write("rho_tau", &LevelRecord::rho_tau);
       write("rho_tau_contraction", &LevelRecord::rho_tau_contraction);
       write("energy", &LevelRecord::energy);
+      write("algebraic_error", &LevelRecord::algebraic_error);
       write("normal_force", &LevelRecord::normal_force);
       write("tangential_force", &LevelRecord::tangential_force);
       write("max_pressure", &LevelRecord::max_pressure);

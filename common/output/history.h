@@ -43,6 +43,9 @@ namespace Friction
     /// The functional at the solution.
     double energy = 0.;
 
+    /// Energy norm of the error of the iteration, extrapolated.
+    double algebraic_error = 0.;
+
     /// Sum of the nodal normal forces, positive in compression.
     double normal_force = 0.;
 
@@ -73,7 +76,8 @@ namespace Friction
     {
       archive &level &cells &dofs &contact_nodes               &sticky_nodes;
       archive &outer_iterations &cycles &attempts &contraction &rho_tau;
-      archive &rho_tau_contraction &energy &normal_force   &tangential_force;
+      archive &rho_tau_contraction &energy &algebraic_error    &normal_force;
+      archive                                              &tangential_force;
       archive &max_pressure &contact_half_width            &stick_half_width;
       archive &estimated_error &certificate &setup_seconds &solve_seconds;
     }

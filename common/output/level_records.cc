@@ -70,6 +70,7 @@ namespace Friction
     record.rho_tau             = report.rho_tau_as_printed();
     record.rho_tau_contraction = report.rho_tau_contraction();
     record.certificate         = report.certificate.largest();
+    record.algebraic_error     = report.algebraic_error;
     record.attempts  = std::max<unsigned int>(1, report.attempts.size());
     records.attempts = describe_attempts(report);
 

@@ -315,8 +315,12 @@ namespace Friction
       {"Solver",
        "Inner tolerance",
        "1e-9",
-       positive,
-       "Relative increment that stops the multigrid iteration."},
+       text,
+       "Relative increment that stops the multigrid iteration. "
+       "'discretisation': "
+       "stop when its error is a tenth of the estimated one of the mesh, on "
+       "all "
+       "meshes but the first."},
       {"Solver",
        "Outer tolerance",
        "2e-7",

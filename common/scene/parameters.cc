@@ -399,6 +399,34 @@ namespace Friction
         numbers.push_back(expressions.evaluate(part, subject));
       return numbers;
     }
+
+
+
+    // A number, or the word that leaves it to the estimated error.
+    void
+    read_inner_tolerance(Values &values, Parameters &parameters)
+    {
+      const std::string name   = "Solver/Inner tolerance";
+      const std::string text   = values.get(name);
+      SolverSettings   &solver = parameters.solver;
+      if (text != "discretisation")
+        {
+          if (!Patterns::Double(1e-300).match(text))
+            throw InputError(values.subject(name) + " is '" + text +
+                             "'; take a positive number, or 'discretisation'.");
+          solver.inner_tolerance = Utilities::string_to_double(text);
+          return;
+        }
+      if (solver.algorithm == Algorithm::fixed_point)
+        throw InputError(values.subject(name) +
+                         " is 'discretisation', which is for the algorithm "
+                         "'Gauss-Seidel like' only; take that or a number.");
+      if (!parameters.refinement.estimate_error)
+        throw InputError(values.subject(name) +
+                         " is 'discretisation', but errors are not estimated; "
+                         "set 'Refinement/Estimate error' or take a number.");
+      solver.stop_at_discretization = true;
+    }
   } // namespace
 
 
@@ -682,7 +710,7 @@ namespace Friction
       solver.smoothing_steps = values.integer("Solver/Smoothing steps");
       solver.coarse_smoothing_steps =
         values.integer("Solver/Coarse smoothing steps");
-      solver.inner_tolerance = values.number("Solver/Inner tolerance");
+      read_inner_tolerance(values, parameters);
       solver.outer_tolerance = values.number("Solver/Outer tolerance");
       solver.certificate_tolerance =
         values.number("Solver/Certificate tolerance");

@@ -87,6 +87,12 @@ namespace Friction
     /// Relative increment at which the multigrid iteration stops.
     double inner_tolerance = 1e-9;
 
+    /// Whether to stop Algorithm 3 as soon as its error is small compared with
+    /// that of the discretisation; see DiscretizationStop, which then sets the
+    /// error at which to stop, an energy norm. Zero: by the inner tolerance.
+    bool   stop_at_discretization = false;
+    double energy_tolerance       = 0.;
+
     /// Relative change of the normal forces at which Algorithm 2 stops.
     double outer_tolerance = 2e-7;
 

@@ -82,6 +82,7 @@ namespace Friction
           iteration.solve(u, state, coulomb, progress);
         report.converged        = result.converged;
         report.inner_converged  = result.converged;
+        report.algebraic_error  = result.algebraic_error;
         report.outer_iterations = 1;
         report.cycles           = result.cycles;
         report.contraction      = result.contraction();
@@ -139,6 +140,7 @@ namespace Friction
         if (report.outer_iterations++ == 0)
           report.contraction = result.contraction();
         report.inner_converged = result.converged;
+        report.algebraic_error = result.algebraic_error;
         if (!result.converged)
           return;
 

@@ -41,6 +41,10 @@ namespace Friction
     /// outer iteration).
     double contraction = 0;
 
+    /// Energy norm of the error of the iteration, see MultigridResult; without
+    /// what the outer iteration of Algorithm 2 adds to it.
+    double algebraic_error = 0;
+
     /// What SafeguardedSolver has tried, in this order; empty if the first
     /// attempt was enough.
     std::vector<SolverAttempt> attempts;

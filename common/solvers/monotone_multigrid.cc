@@ -16,6 +16,23 @@ namespace Friction
 
 
 
+    // The increments that are still to come, if they go on as the last two:
+    // each iterate differs from the one before by an increment, and from the
+    // solution by all that follow. The pace is not believed to be better than a
+    // tenth per cycle, nor, so that the sum is finite, slower than 0.98.
+    double
+    extrapolated_error(const std::vector<CycleInfo> &cycles)
+    {
+      const double last = cycles.back().increment;
+      if (cycles.size() < 2 || !(cycles[cycles.size() - 2].increment > 0))
+        return last;
+      const double pace =
+        std::max(.1, std::min(.98, last / cycles[cycles.size() - 2].increment));
+      return last * pace / (1 - pace);
+    }
+
+
+
     // Adds the time until its end to a counter; what is sent until then counts
     // for the same part of the work.
     class Stopwatch
@@ -222,7 +239,12 @@ namespace Friction
               progress(cycle, info.increment);
             if (!std::isfinite(info.increment))
               break;
-            if (info.increment <= settings.inner_tolerance)
+            result.algebraic_error =
+              std::sqrt(std::max(sums[norm], floor_of_norm)) *
+              extrapolated_error(result.cycles);
+            if (info.increment <= settings.inner_tolerance ||
+                (cycle > 1 &&
+                 result.algebraic_error <= settings.energy_tolerance))
               {
                 result.converged = true;
                 break;

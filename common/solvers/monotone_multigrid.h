@@ -33,6 +33,10 @@ namespace Friction
     bool                   converged = false;
     std::vector<CycleInfo> cycles;
 
+    /// Energy norm of the error of the last iterate, extrapolated from the last
+    /// increments.
+    double algebraic_error = 0;
+
     /** Mean contraction of the increments, per cycle; zero if there were fewer
      * than two. */
     double contraction() const;
@@ -92,7 +96,8 @@ namespace Friction
                       const SolverSettings       &settings);
 
     /**
-     * Iterates until the relative increment is at most the inner tolerance. An
+     * Iterates until the relative increment is at most the inner tolerance, or
+     * until the error itself is at most the energy tolerance. An
      * iteration that would not get there within the maximum number of cycles
      * is given up early if the settings have safeguards, see
      * MultigridResult::stalls().

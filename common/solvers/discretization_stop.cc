@@ -1,0 +1,64 @@
+#include <common/solvers/discretization_stop.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Friction
+{
+  namespace
+  {
+    // What the residual estimator is, in multiples of the error.
+    constexpr double overestimation = 8.;
+
+    // The share of the iteration in the error.
+    constexpr double share = .1;
+
+    // How much better than expected a mesh may be.
+    constexpr double caution = .5;
+  } // namespace
+
+
+
+  template <int dim>
+  DiscretizationStop<dim>::DiscretizationStop(const SolverSettings &settings)
+    : settings(settings)
+  {}
+
+
+
+  template <int dim>
+  SolverSettings
+  DiscretizationStop<dim>::settings_for(
+    const types::global_dof_index n_dofs) const
+  {
+    SolverSettings result = settings;
+    if (settings.stop_at_discretization && error > 0)
+      {
+        result.energy_tolerance = caution * share * error *
+          std::pow(double(n_dofs_then) / double(n_dofs), 1. / dim);
+        // The laws of contact hold at each node as well as the solution is
+        // known, and forces at single nodes are known less well than it.
+        result.certificate_tolerance =
+          std::max(settings.certificate_tolerance,
+                   10. * result.energy_tolerance / energy_norm);
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  DiscretizationStop<dim>::add_estimate(const ErrorEstimate          &estimate,
+                                        const types::global_dof_index n_dofs)
+  {
+    error = estimate.energy_norm > 0 ? estimate.total / overestimation : 0.;
+    energy_norm = estimate.energy_norm;
+    n_dofs_then = n_dofs;
+  }
+
+
+
+  template class DiscretizationStop<2>;
+  template class DiscretizationStop<3>;
+} // namespace Friction
