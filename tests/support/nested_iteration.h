@@ -75,6 +75,15 @@ namespace Tests
     solve()
     {
       report = solve_with(parameters.solver, displacement, state);
+      accept();
+    }
+
+    /** Takes displacement, state and report, set by the caller, as the solution
+     * on this level. */
+    void
+    accept()
+    {
+      discretization->hanging.distribute(displacement);
       displacement.update_ghost_values();
       tractions = contact_tractions(report.residual,
                                     *discretization->constraints,
