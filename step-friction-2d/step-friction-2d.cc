@@ -35,6 +35,7 @@
 #include <common/compatibility.h>
 #include <common/contact/contact_boundary.h>
 #include <common/contact/nodal_constraints.h>
+#include <common/elasticity/volumetric_strain.h>
 #include <common/estimate/contact_estimate.h>
 #include <common/estimate/exact_error.h>
 #include <common/estimate/marking.h>
@@ -340,8 +341,12 @@ namespace StepFriction2d
   // $a(u,v)=\int \lambda\, \mathrm{div}\,u\,\mathrm{div}\,v +
   // 2\mu\,\varepsilon(u):\varepsilon(v)$; written with the gradients $g_i$ of
   // the scalar shape functions of components $c_i$ its entries are
-  // $\lambda\, g_{i,c_i} g_{j,c_j} + \mu\, g_{i,c_j} g_{j,c_i} +
-  // \mu\,\delta_{c_ic_j} g_i\cdot g_j$.
+  // $\lambda\, \theta_i\theta_j + \mu\, g_{i,c_j} g_{j,c_i} +
+  // \mu\,\delta_{c_ic_j} g_i\cdot g_j$, where
+  // $\theta_i=\mathrm{div}\,\varphi_i=g_{i,c_i}$. Only if a scene says
+  // <code>Material/Volumetric strain = mean</code>, because its material is
+  // nearly incompressible, $\theta_i$ is the mean of the divergence over the
+  // cell; see the introduction.
   template <int dim>
   void
   ContactProblem<dim>::assemble_system()
@@ -372,6 +377,7 @@ namespace StepFriction2d
     const double       lambda        = scene.material().lambda();
     const double       mu            = scene.material().mu();
 
+    Table<2, double>   theta;
     FullMatrix<double> cell_matrix(dofs_per_cell, dofs_per_cell);
     Vector<double>     cell_forces(dofs_per_cell);
     Vector<double>     load(dim);
@@ -386,6 +392,7 @@ namespace StepFriction2d
           cell_matrix = 0.;
           cell_forces = 0.;
           fe_values.reinit(cell);
+          shape_volumetric_strains(fe_values, scene.material(), theta);
           for (const unsigned int q : fe_values.quadrature_point_indices())
             {
               const double JxW = fe_values.JxW(q);
@@ -395,8 +402,7 @@ namespace StepFriction2d
                   for (unsigned int j = 0; j < dofs_per_cell; ++j)
                     {
                       const Tensor<1, dim> &g_j = fe_values.shape_grad(j, q);
-                      double                entry =
-                        lambda * g_i[component[i]] * g_j[component[j]] +
+                      double entry = lambda * theta(i, q) * theta(j, q) +
                         mu * g_i[component[j]] * g_j[component[i]];
                       if (component[i] == component[j])
                         entry += mu * (g_i * g_j);

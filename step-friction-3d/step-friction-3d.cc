@@ -30,6 +30,7 @@
 #include <common/compatibility.h>
 #include <common/contact/contact_boundary.h>
 #include <common/contact/nodal_constraints.h>
+#include <common/elasticity/volumetric_strain.h>
 #include <common/estimate/contact_estimate.h>
 #include <common/estimate/exact_error.h>
 #include <common/estimate/marking.h>
@@ -392,6 +393,7 @@ namespace StepFriction3d
     const double       lambda        = scene.material().lambda();
     const double       mu            = scene.material().mu();
 
+    Table<2, double>   theta;
     FullMatrix<double> cell_matrix(dofs_per_cell, dofs_per_cell);
     Vector<double>     cell_forces(dofs_per_cell);
     Vector<double>     load(dim);
@@ -406,6 +408,7 @@ namespace StepFriction3d
           cell_matrix = 0.;
           cell_forces = 0.;
           fe_values.reinit(cell);
+          shape_volumetric_strains(fe_values, scene.material(), theta);
           for (const unsigned int q : fe_values.quadrature_point_indices())
             {
               const double JxW = fe_values.JxW(q);
@@ -415,8 +418,7 @@ namespace StepFriction3d
                   for (unsigned int j = 0; j < dofs_per_cell; ++j)
                     {
                       const Tensor<1, dim> &g_j = fe_values.shape_grad(j, q);
-                      double                entry =
-                        lambda * g_i[component[i]] * g_j[component[j]] +
+                      double entry = lambda * theta(i, q) * theta(j, q) +
                         mu * g_i[component[j]] * g_j[component[i]];
                       if (component[i] == component[j])
                         entry += mu * (g_i * g_j);

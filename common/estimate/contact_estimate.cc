@@ -19,6 +19,7 @@ namespace Friction
     EstimatorProblem<dim> problem;
     problem.lambda               = scene.material().lambda();
     problem.mu                   = scene.material().mu();
+    problem.volumetric_strain    = scene.material().volumetric_strain();
     problem.body_force           = scene.body_force().get();
     problem.contact_boundary     = scene.contact_boundary_id();
     problem.friction_coefficient = scene.friction_coefficient();

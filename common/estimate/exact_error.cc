@@ -1,4 +1,5 @@
 #include <common/compatibility.h>
+#include <common/elasticity/volumetric_strain.h>
 #include <common/estimate/exact_error.h>
 
 #include <deal.II/base/mpi.h>
@@ -51,6 +52,9 @@ namespace Friction
                       const Function<dim>   &exact,
                       const LinearAlgebra::distributed::Vector<double> &u_h)
   {
+    const VolumetricStrainField<dim> volumetric_strain(
+      mapping, dof_handler, material.volumetric_strain(), u_h);
+
     const QGauss<dim>                    quadrature(4);
     FEValues<dim>                        fe_values(mapping,
                             dof_handler.get_fe(),
@@ -75,7 +79,9 @@ namespace Friction
                 gradient[c] = exact.gradient(fe_values.quadrature_point(q), c);
               const SymmetricTensor<2, dim> e =
                 symmetrize(gradient) - strains[q];
-              square += (material.lambda() * trace(e) * trace(e) +
+              const double theta = trace(gradient) -
+                volumetric_strain.value(cell, trace(strains[q]));
+              square += (material.lambda() * theta * theta +
                          2. * material.mu() * (e * e)) *
                 fe_values.JxW(q);
             }

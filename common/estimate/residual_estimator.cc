@@ -1,4 +1,5 @@
 #include <common/compatibility.h>
+#include <common/elasticity/volumetric_strain.h>
 #include <common/estimate/residual_estimator.h>
 
 #include <deal.II/base/mpi.h>
@@ -53,12 +54,15 @@ namespace Friction
       double square_of_rounding(const CellIterator &cell) const;
 
       Tensor<1, dim> stress_times_normal(const SymmetricTensor<2, dim> &strain,
+                                         const double volumetric_strain,
                                          const Tensor<1, dim> &normal) const;
 
       const DoFHandler<dim>       &dof_handler;
       const EstimatorProblem<dim> &problem;
       const VectorType            &displacement;
       const EstimatorContact      &contact;
+
+      const VolumetricStrainField<dim> volumetric_strain;
 
       // Turns squared stresses into energies.
       const double scaling;
@@ -98,6 +102,8 @@ namespace Friction
       , problem(problem)
       , displacement(displacement)
       , contact(contact)
+      , volumetric_strain(
+          mapping, dof_handler, problem.volumetric_strain, displacement)
       , scaling(1. / (2. * problem.mu))
       , displacements(0)
       , fe_values(mapping,
@@ -205,21 +211,27 @@ namespace Friction
     template <int dim>
     Tensor<1, dim>
     Estimator<dim>::stress_times_normal(const SymmetricTensor<2, dim> &strain,
+                                        const double          volumetric_strain,
                                         const Tensor<1, dim> &normal) const
     {
       return 2. * problem.mu * (strain * normal) +
-        problem.lambda * trace(strain) * normal;
+        problem.lambda * volumetric_strain * normal;
     }
 
 
 
     // $\operatorname{div}\sigma=\mu\Delta
     // u+(\lambda+\mu)\nabla\operatorname{div}u$. Bilinear functions have mixed
-    // second derivatives, so this is not zero.
+    // second derivatives, so this is not zero. The pressure has a gradient in
+    // a cell only if it is that of a pointwise volumetric strain.
     template <int dim>
     void
     Estimator<dim>::add_cell(const CellIterator &cell)
     {
+      const double of_gradient = volumetric_strain.is_pointwise()
+        ? problem.lambda + problem.mu
+        : problem.mu;
+
       fe_values.reinit(cell);
       fe_values[displacements].get_function_hessians(displacement, hessians);
       fe_values[displacements].get_function_symmetric_gradients(displacement,
@@ -228,7 +240,7 @@ namespace Friction
         problem.body_force->vector_value_list(fe_values.get_quadrature_points(),
                                               body_forces);
 
-      double squared_residual = 0.;
+      double squared_residual = 0., squared_difference = 0.;
       for (const unsigned int q : fe_values.quadrature_point_indices())
         {
           Tensor<1, dim> residual;
@@ -238,20 +250,25 @@ namespace Friction
               residual[i] = body_forces[q](i);
               for (unsigned int j = 0; j < dim; ++j)
                 residual[i] += problem.mu * hessians[q][i][j][j] +
-                  (problem.lambda + problem.mu) * hessians[q][j][j][i];
+                  of_gradient * hessians[q][j][j][i];
             }
           squared_residual += residual.norm_square() * fe_values.JxW(q);
 
           const double divergence = trace(cell_strains[q]);
+          const double theta      = volumetric_strain.value(cell, divergence);
+          squared_difference +=
+            (divergence - theta) * (divergence - theta) * fe_values.JxW(q);
           energy +=
             (2. * problem.mu * cell_strains[q].norm() * cell_strains[q].norm() +
-             problem.lambda * divergence * divergence) *
+             problem.lambda * theta * theta) *
             fe_values.JxW(q);
         }
 
       add(cell,
           scaling * cell->diameter() * cell->diameter() * squared_residual,
           estimate.interior);
+      if (!volumetric_strain.is_pointwise())
+        add(cell, 2. * problem.mu * squared_difference, estimate.interior);
     }
 
 
@@ -328,10 +345,15 @@ namespace Friction
 
       double squared_jump = 0.;
       for (const unsigned int q : values.quadrature_point_indices())
-        squared_jump += stress_times_normal(strains[q] - neighbor_strains[q],
-                                            values.normal_vector(q))
-                          .norm_square() *
-          values.JxW(q);
+        {
+          const SymmetricTensor<2, dim> jump = strains[q] - neighbor_strains[q];
+          squared_jump += stress_times_normal(
+                            jump,
+                            volumetric_strain.jump(cell, neighbor, trace(jump)),
+                            values.normal_vector(q))
+                            .norm_square() *
+            values.JxW(q);
+        }
 
       for (const CellIterator &side : {cell, neighbor})
         if (side->is_locally_owned())
@@ -382,7 +404,10 @@ namespace Friction
       for (const unsigned int q : face_values.quadrature_point_indices())
         {
           Tensor<1, dim> residual = nodal_tractions[q] -
-            stress_times_normal(strains[q], face_values.normal_vector(q));
+            stress_times_normal(strains[q],
+                                volumetric_strain.value(cell,
+                                                        trace(strains[q])),
+                                face_values.normal_vector(q));
           for (unsigned int c = 0; c < dim; ++c)
             if (mask[c])
               residual[c] = 0.;

@@ -1,6 +1,8 @@
 #ifndef friction_estimate_residual_estimator_h
 #define friction_estimate_residual_estimator_h
 
+#include <common/scene/material.h>
+
 #include <deal.II/base/function.h>
 #include <deal.II/base/types.h>
 
@@ -26,6 +28,9 @@ namespace Friction
     /// Lamé's constants, in the units of stress (2D: plane strain).
     double lambda = 0.;
     double mu     = 0.;
+
+    /// The volumetric strain that lambda is multiplied with.
+    VolumetricStrain volumetric_strain = VolumetricStrain::pointwise;
 
     /// Force per volume; none if not given.
     const dealii::Function<dim> *body_force = nullptr;
@@ -124,6 +129,12 @@ namespace Friction
    * $\nu\to\frac12$. The estimate is a bound up to a constant that depends on
    * the shape of the cells only; on uniform meshes of squares and cubes the
    * ratio to the true error is about 7 and 9 (see the tests).
+   *
+   * With VolumetricStrain::mean $\sigma_h$ has the mean $\theta_h$ of the
+   * divergence over the cell in it. The sum then has one more term,
+   * $2\mu\|\operatorname{div}u_h-\theta_h\|_K^2$, booked as interior: by how
+   * much the displacement violates what the pressure says of it, as in
+   * estimators for the mixed method.
    *
    * A hanging face is integrated over its smaller parts and shared by
    * the cells on both sides, like every other interior face.

@@ -1,4 +1,5 @@
 #include <common/compatibility.h>
+#include <common/elasticity/volumetric_strain.h>
 #include <common/output/fields.h>
 #include <common/parallel/collective_error.h>
 
@@ -77,9 +78,11 @@ namespace Friction
     class Stresses : public DataPostprocessor<dim>
     {
     public:
-      Stresses(const double lambda, const double mu)
-        : lambda(lambda)
-        , mu(mu)
+      Stresses(const Material                   &material,
+               const VolumetricStrainField<dim> &volumetric_strain)
+        : lambda(material.lambda())
+        , mu(material.mu())
+        , volumetric_strain(volumetric_strain)
       {}
 
       void
@@ -87,6 +90,7 @@ namespace Friction
         const DataPostprocessorInputs::Vector<dim> &inputs,
         std::vector<Vector<double>> &computed_quantities) const override
       {
+        const auto cell = inputs.template get_cell<dim>();
         for (unsigned int q = 0; q < computed_quantities.size(); ++q)
           {
             // Always a 3x3 tensor: in plane strain the third normal strain
@@ -98,7 +102,8 @@ namespace Friction
                   (inputs.solution_gradients[q][i][j] +
                    inputs.solution_gradients[q][j][i]);
             const SymmetricTensor<2, 3> stress = 2. * mu * strain +
-              lambda * trace(strain) * unit_symmetric_tensor<3>();
+              lambda * volumetric_strain.value(cell, trace(strain)) *
+                unit_symmetric_tensor<3>();
 
             Vector<double> &values = computed_quantities[q];
             values[0]              = stress[0][0];
@@ -144,8 +149,9 @@ namespace Friction
       }
 
     private:
-      const double lambda;
-      const double mu;
+      const double                      lambda;
+      const double                      mu;
+      const VolumetricStrainField<dim> &volumetric_strain;
     };
 
 
@@ -226,13 +232,11 @@ namespace Friction
 
   template <int dim>
   FieldWriter<dim>::FieldWriter(const RunDirectory      &directory,
-                                const double             lambda,
-                                const double             mu,
+                                const Material          &material,
                                 const types::boundary_id contact_boundary,
                                 const FieldFormat        format)
     : directory(directory)
-    , lambda(lambda)
-    , mu(mu)
+    , material(material)
     , contact_boundary(contact_boundary)
     , format(format)
   {}
@@ -269,7 +273,9 @@ namespace Friction
                                const VectorType      &displacement,
                                const Vector<float>   *cell_errors)
   {
-    const Stresses<dim> stresses(lambda, mu);
+    const VolumetricStrainField<dim> volumetric_strain(
+      mapping, dof_handler, material.volumetric_strain(), displacement);
+    const Stresses<dim> stresses(material, volumetric_strain);
 
     DataOut<dim> data_out;
     data_out.attach_dof_handler(dof_handler);

@@ -20,6 +20,7 @@
 
 #include <common/output/history.h>
 #include <common/output/run_directory.h>
+#include <common/scene/material.h>
 #include <common/scene/parameters.h>
 
 #include <string>
@@ -66,13 +67,12 @@ namespace Friction
 
     /**
      * @param directory        where the files go.
-     * @param lambda, mu       Lamé's constants, in the units of stress.
+     * @param material         from which stresses follow.
      * @param contact_boundary boundary id of $\Gamma_S$.
      * @param format           of the files of the body.
      */
     FieldWriter(const RunDirectory              &directory,
-                const double                     lambda,
-                const double                     mu,
+                const Material                  &material,
                 const dealii::types::boundary_id contact_boundary,
                 const FieldFormat                format = FieldFormat::vtu);
 
@@ -137,8 +137,7 @@ namespace Friction
                            const MPI_Comm       communicator) const;
 
     const RunDirectory               directory;
-    const double                     lambda;
-    const double                     mu;
+    const Material                   material;
     const dealii::types::boundary_id contact_boundary;
     const FieldFormat                format;
 

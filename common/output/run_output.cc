@@ -55,8 +55,7 @@ namespace Friction
               version,
               communicator)
     , fields(directory,
-             scene.material().lambda(),
-             scene.material().mu(),
+             scene.material(),
              scene.contact_boundary_id(),
              parameters.output.format)
     , checkpoints(directory, communicator)

@@ -6,6 +6,16 @@
 namespace Friction
 {
   /**
+   * Which volumetric strain the compressive stiffness of a discrete body is
+   * made of.
+   */
+  enum class VolumetricStrain
+  {
+    pointwise, ///< the divergence of the displacement, as it is
+    mean       ///< its mean over each cell, which does not lock
+  };
+
+  /**
    * A linear elastic, isotropic material. In two dimensions we mean plane
    * strain throughout, so that the Lam&eacute; constants are the same in 2D and
    * 3D.
@@ -16,10 +26,15 @@ namespace Friction
     /**
      * @param youngs_modulus positive, in units of stress
      * @param poisson_ratio between -1 and 1/2, both excluded
+     * @param volumetric_strain of the discrete body
      */
-    Material(const double youngs_modulus, const double poisson_ratio)
+    Material(
+      const double           youngs_modulus,
+      const double           poisson_ratio,
+      const VolumetricStrain volumetric_strain = VolumetricStrain::pointwise)
       : E(youngs_modulus)
       , nu(poisson_ratio)
+      , dilatation(volumetric_strain)
     {}
 
     /// Young's modulus, in units of stress.
@@ -50,9 +65,17 @@ namespace Friction
       return E / (2. * (1. + nu));
     }
 
+    /// What the discrete body's pressure is made of.
+    VolumetricStrain
+    volumetric_strain() const
+    {
+      return dilatation;
+    }
+
   private:
-    double E;
-    double nu;
+    double           E;
+    double           nu;
+    VolumetricStrain dilatation;
   };
 
   /**

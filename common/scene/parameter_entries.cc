@@ -124,6 +124,13 @@ namespace Friction
        number,
        "Positive [stress]. The body is isotropic; in 2D plane strain."},
       {"Material", "Poisson ratio", "0.3", number, "Between -1 and 1/2."},
+      {"Material",
+       "Volumetric strain",
+       "pointwise",
+       choice("pointwise|mean"),
+       "Of the discrete body. 'mean': its mean over each cell, for nearly "
+       "incompressible materials, from a Poisson ratio of about 0.45 on, where "
+       "'pointwise' makes the body too stiff."},
 
       {"Obstacle",
        "Kind",

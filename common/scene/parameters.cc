@@ -522,7 +522,12 @@ namespace Friction
       throw InputError(values.subject("Contact/Friction coefficient") + " is " +
                        values.get("Contact/Friction coefficient") +
                        ", but it must not be negative.");
-    parameters.material = Material(E, nu);
+    parameters.material =
+      Material(E,
+               nu,
+               values.get("Material/Volumetric strain") == "mean"
+                 ? VolumetricStrain::mean
+                 : VolumetricStrain::pointwise);
 
     std::map<std::string, double> constants = {
       {"E", E},

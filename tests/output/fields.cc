@@ -51,7 +51,7 @@ namespace
     on_first_process(MPI_COMM_WORLD,
                      [&]() { std::filesystem::remove_all(name); });
     const RunDirectory directory(name, MPI_COMM_WORLD);
-    FieldWriter<dim>   writer(directory, 1., 1., 2, format);
+    FieldWriter<dim>   writer(directory, Material(2.5, .25), 2, format);
 
     parallel::distributed::Triangulation<dim> triangulation(MPI_COMM_WORLD);
     GridGenerator::hyper_cube(triangulation, 0., 1., true);

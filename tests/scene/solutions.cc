@@ -208,6 +208,9 @@ main(int argc, char **argv)
   check("manufactured",
         {"Material/Poisson ratio=0.45", "Scene/Rotation angle=30"},
         long_block);
+  check("incompressible", {}, long_block);
+  check("incompressible", {"Material/Poisson ratio=0.3"}, long_block);
+  check("incompressible", {"Material/Poisson ratio=0.4999"}, long_block);
   const std::string others = "Scene/Constants=L=2;H=1;d=0.02;gap=0.01;U=";
   check("stick-slip", {}, block);
   check("stick-slip", {others + "0.01"}, block);

@@ -91,6 +91,7 @@ namespace
     std::string what;
     double      shear; ///< in multiples of the threshold
     double      gap, angle, youngs_modulus, unit;
+    std::string volumetric_strain = "pointwise";
   };
 
   // On a distorted mesh with hanging nodes displacements and pressures must be
@@ -118,6 +119,7 @@ namespace
          "; gap = " + number(gap),
        "Scene/Rotation angle=" + number(patch.angle),
        "Material/Young's modulus=" + number(patch.youngs_modulus),
+       "Material/Volumetric strain=" + patch.volumetric_strain,
        "Solver/Inner tolerance=1e-13"});
     const Scene<2> scene(parameters);
     auto           mesh = make_triangulation<2>();
@@ -295,7 +297,10 @@ main(int argc, char **argv)
       stick_slip({text.str() + "E = 1e10", shear, 0, 0, 1e10, 1});
       stick_slip({text.str() + "E = 1e-10", shear, 0, 0, 1e-10, 1});
       stick_slip({text.str() + "in mm", shear, 0, 0, 1, 1000});
-      stick_slip({text.str() + "all at once", shear, 0.01, -110, 1e10, 1000});
+      stick_slip(
+        {text.str() + "mean volumetric strains", shear, 0, 0, 1, 1, "mean"});
+      stick_slip(
+        {text.str() + "all at once", shear, 0.01, -110, 1e10, 1000, "mean"});
     }
   manufactured();
 }

@@ -4,6 +4,7 @@
 #include <common/compatibility.h>
 #include <common/contact/contact_boundary.h>
 #include <common/contact/nodal_constraints.h>
+#include <common/elasticity/volumetric_strain.h>
 #include <common/multigrid/leaf_matrix.h>
 #include <common/multigrid/level_hierarchy.h>
 #include <common/multigrid/node_numbering.h>
@@ -184,6 +185,7 @@ namespace Tests
       const unsigned int                   n_dofs = fe.n_dofs_per_cell();
       FullMatrix<double>                   cell_matrix(n_dofs, n_dofs);
       Vector<double>                       cell_rhs(n_dofs), value(dim);
+      Table<2, double>                     theta;
       std::vector<types::global_dof_index> indices(n_dofs);
       const double                         lambda = scene.material().lambda();
       const double                         mu     = scene.material().mu();
@@ -193,6 +195,7 @@ namespace Tests
             cell_matrix = 0.;
             cell_rhs    = 0.;
             fe_values.reinit(cell);
+            shape_volumetric_strains(fe_values, scene.material(), theta);
             for (const unsigned int q : fe_values.quadrature_point_indices())
               {
                 for (unsigned int i = 0; i < n_dofs; ++i)
@@ -206,7 +209,8 @@ namespace Tests
                           fe.system_to_component_index(j).first;
                         const Tensor<1, dim> gj = fe_values.shape_grad(j, q);
                         cell_matrix(i, j) +=
-                          (lambda * gi[ci] * gj[cj] + mu * gi[cj] * gj[ci] +
+                          (lambda * theta(i, q) * theta(j, q) +
+                           mu * gi[cj] * gj[ci] +
                            (ci == cj ? mu * (gi * gj) : 0.)) *
                           fe_values.JxW(q);
                       }
