@@ -145,12 +145,13 @@ def slope_triangle(axes, x, y, color, above):
                   fontsize=7)
 
 
-def labels_at_right(axes, ends, size=8, step=None):
+def labels_at_right(axes, ends, size=8, header=False):
     """Names at the right of the axes at the heights of the ends of lines, moved
-    apart where they would collide. `ends` has rows (value, name, colour)."""
+    apart where they would collide, and away from a header at the top if there is
+    one. `ends` has rows (value, name, colour)."""
     box = axes.get_window_extent()
     pixels = axes.figure.dpi / 72
-    step = (step or 1.3 * size) * pixels
+    step = 1.3 * size * pixels
     rows = sorted((axes.transData.transform((axes.get_xlim()[0], value))[1],
                    name, color) for value, name, color in ends)
     if not rows:
@@ -159,7 +160,8 @@ def labels_at_right(axes, ends, size=8, step=None):
     # Push up from below, then down again from the top, so that all stay inside.
     for i in range(1, len(places)):
         places[i] = max(places[i], places[i - 1] + step)
-    places[-1] = min(places[-1], max(box.y1, box.y0 + (len(rows) - 1) * step))
+    top = box.y1 - (1.3 * step if header else 0)
+    places[-1] = min(places[-1], max(top, box.y0 + (len(rows) - 1) * step))
     for i in range(len(places) - 2, -1, -1):
         places[i] = min(places[i], places[i + 1] - step)
     for place, (end, name, color) in zip(places, rows):
@@ -181,7 +183,7 @@ def headline(figure, text, subject=None, width=None):
     figure.text(0.012, 1 - 0.07 / height, "\n".join(lines), va="top",
                 fontsize=10.5, fontweight="bold", linespacing=1.2)
     if subject:
-        subject = "\n".join(textwrap.wrap(subject, int(width * 1.25)))
+        subject = "\n".join(textwrap.wrap(subject, int(width * 1.45)))
         figure.text(0.012, 1 - (0.12 + 0.178 * len(lines)) / height, subject,
                     va="top", fontsize=8.5, color="0.3")
 

@@ -3,9 +3,10 @@
 
     make_data.py --bin2d=PROGRAM --bin3d=PROGRAM --precision=PROGRAM
         --solvers=PROGRAM --scenes2d=FOLDER --scenes3d=FOLDER --runs=FOLDER
-        --data=FOLDER [--quick] [--only=precision,cycles,solvers]
+        --data=FOLDER [--quick] [--only=PART,...]
 
-What is measured, and on which meshes, stands in runs.py. Nothing is written of a
+The parts are precision, cycles and solvers. What is measured, and on which
+meshes, stands in runs.py. Nothing is written of a
 run that did not end well; then this program does not, either."""
 
 import argparse
@@ -76,7 +77,7 @@ class Measurements:
     def cycles(self):
         for what in runs.cycles(self.options.quick):
             rows = []
-            for friction in runs.FRICTIONS:
+            for friction in what.frictions:
                 for correction in runs.CORRECTIONS:
                     for truncation in runs.TRUNCATIONS:
                         say(f"cycles: {what.scene}, F = {friction}, "
@@ -114,6 +115,8 @@ class Measurements:
                 for i in range(last + 1)]
 
     def solvers(self):
+        if not self.options.solvers:
+            raise DataError("--solvers=PROGRAM is missing.")
         for what in runs.solvers(self.options.quick):
             say(f"all solvers: {what.name}")
             files = {kind: self.data / f"{kind}-{what.name}.csv"
@@ -140,17 +143,22 @@ class Measurements:
 
 def main():
     parser = argparse.ArgumentParser()
-    for name in ("bin2d", "bin3d", "precision", "solvers", "scenes2d",
-                 "scenes3d", "runs", "data"):
+    for name in ("bin2d", "bin3d", "precision", "scenes2d", "scenes3d", "runs",
+                 "data"):
         parser.add_argument(f"--{name}", required=True)
+    parser.add_argument("--solvers")
     parser.add_argument("--quick", action="store_true")
-    parser.add_argument("--only", default="precision,cycles,solvers")
+    parser.add_argument("--only", default=",".join(runs.PARTS))
     options = parser.parse_args()
     measurements = Measurements(options)
+    parts = {"precision": measurements.precision,
+             "cycles": measurements.cycles, "solvers": measurements.solvers}
     try:
         for part in options.only.split(","):
-            {"precision": measurements.precision, "cycles": measurements.cycles,
-             "solvers": measurements.solvers}[part]()
+            if part in parts:
+                parts[part]()
+            elif part not in runs.DRAWN_ONLY:
+                raise DataError(f"There is nothing called '{part}' to measure.")
     except DataError as error:
         sys.exit(str(error))
     say("all data have been measured")
