@@ -4,7 +4,7 @@ eck_bound() in common/scene/material.h."""
 
 import numpy as np
 
-from chart import BLUE, GREY, RED, grid, headline, plt, save
+from chart import BLUE, GREY, RED, axes_below, grid, headline, plt, save
 
 
 def bound_2d(nu):
@@ -18,7 +18,7 @@ def bound_3d(nu):
 def draw(output):
     nu = np.linspace(0, 0.5, 201)
     figure, axes = plt.subplots(figsize=(5.2, 3.7))
-    figure.subplots_adjust(left=0.11, right=0.97, top=0.8, bottom=0.13)
+    figure.subplots_adjust(left=0.11, right=0.97, bottom=0.13)
     for bound, color, line, text, below in (
             (bound_2d, BLUE, "-", "two dimensions", False),
             (bound_3d, RED, "--", "three dimensions", True)):
@@ -33,9 +33,10 @@ def draw(output):
     axes.set_ylabel(r"coefficient of friction $\mathcal{F}$")
     grid(axes)
     mid = 0.325
-    headline(figure, "The more nearly incompressible, the more friction in 2D "
+    top = headline(figure, "The more nearly incompressible, the more friction in 2D "
              "and the less in 3D", "Below the lines a static solution is known "
              "to exist (Eck).", width=56)
+    axes_below(figure, top, 0.1)
     axes.plot([mid, mid], [bound_2d(mid), bound_3d(mid)], "o", color="k",
               markersize=4)
     for bound, below in ((bound_2d, False), (bound_3d, True)):

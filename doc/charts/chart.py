@@ -175,17 +175,26 @@ def labels_at_right(axes, ends, size=8, header=False):
                                   "relpos": (0, 0.5)})
 
 
-def headline(figure, text, subject=None, width=None):
-    """The message of a chart, at its top left, and below it what is shown."""
+def headline(figure, text, subject, width=None):
+    """The message of a chart, at its top left, and below it what is shown. Returns
+    how much of the height is left for the axes, in inches from below."""
     width = width or int(figure.get_figwidth() * 11)
-    lines = textwrap.wrap(text, width)
     height = figure.get_figheight()
-    figure.text(0.012, 1 - 0.07 / height, "\n".join(lines), va="top",
-                fontsize=10.5, fontweight="bold", linespacing=1.2)
-    if subject:
-        subject = "\n".join(textwrap.wrap(subject, int(width * 1.45)))
-        figure.text(0.012, 1 - (0.12 + 0.178 * len(lines)) / height, subject,
-                    va="top", fontsize=8.5, color="0.3")
+    place = height - 0.07
+    for words, size, weight, color, step, columns in (
+            (text, 10.5, "bold", "k", 0.185, width),
+            (subject, 8.5, "normal", "0.3", 0.15, int(1.45 * width))):
+        lines = textwrap.wrap(words, columns)
+        figure.text(0.012, place / height, "\n".join(lines), va="top",
+                    fontsize=size, fontweight=weight, color=color,
+                    linespacing=1.2)
+        place -= step * len(lines) + 0.06
+    return place
+
+
+def axes_below(figure, top, titles=0.0):
+    """Leaves the axes what a headline has left, but for titles of their own."""
+    figure.subplots_adjust(top=(top - titles) / figure.get_figheight())
 
 
 def times(ratio):

@@ -3,8 +3,8 @@ good as the mesh."""
 
 import numpy as np
 
-from chart import (DataError, Table, grid, headline, plt, save, solver_style,
-                   times)
+from chart import (DataError, Table, axes_below, grid, headline, plt, save,
+                   solver_style, times)
 
 COLUMNS = ("solver", "iteration", "seconds", "relative_error")
 
@@ -65,7 +65,7 @@ def draw(data, output, name, subject):
     arrivals = {solver: arrival(line, target) for solver, line in lines.items()}
 
     figure, axes = plt.subplots(figsize=(7, 4.3))
-    figure.subplots_adjust(left=0.095, right=0.63, top=0.84, bottom=0.105)
+    figure.subplots_adjust(left=0.095, right=0.63, bottom=0.105)
     axes.set_xscale("log")
     axes.set_yscale("log")
     seconds = table["seconds"]
@@ -125,6 +125,6 @@ def draw(data, output, name, subject):
                   "linear: contact phases bonded,\nerror of that linear problem",
                   transform=axes.transAxes, fontsize=7, va="top", color="0.35")
     dofs = f"{int(table.remark('dofs')):,}".replace(",", " ")
-    headline(figure, message(arrivals, goal_name),
-             f"{subject} {dofs} degrees of freedom.")
+    axes_below(figure, headline(figure, message(arrivals, goal_name),
+                                f"{subject} {dofs} degrees of freedom."), 0.08)
     save(figure, output, f"convergence-{name}.svg")

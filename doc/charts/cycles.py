@@ -3,8 +3,8 @@ truncation and of coarse corrections."""
 
 import numpy as np
 
-from chart import (BLUE, ORANGE, RED, DataError, Table, grid, headline, plt,
-                   save)
+from chart import (BLUE, ORANGE, RED, DataError, Table, axes_below, grid, headline,
+                   plt, save)
 
 COLUMNS = ("friction", "truncation", "correction", "level", "dofs", "cycles",
            "solved")
@@ -13,21 +13,35 @@ STYLES = {"phases": (BLUE, "o", "-"), "contact": (ORANGE, "s", "--"),
 CORRECTIONS = ("truncated", "monotone")
 
 
+def outcome(table, shown, truncation):
+    """Cycles and failures of a kind of truncation, in words; None if it behaves
+    like the default."""
+    here = shown & (table["truncation"] == truncation)
+    default = shown & (table["truncation"] == "phases")
+    if (here.sum() == default.sum() and
+            np.all(table["cycles"][here] == table["cycles"][default])):
+        return None
+    runs = len(set(zip(table["friction"][here], table["correction"][here])))
+    failures = int(np.sum(table["solved"][here] == 0))
+    return (f"{failures} of {runs} runs fail" if failures else
+            f"it takes up to {table['cycles'][here].max():.0f}")
+
+
 def message(table, first_level):
-    """How far the cycles of the default differ, and what is worst."""
-    shown = (table["level"] >= first_level)
+    """What the default takes, and how the others fare."""
+    shown = table["level"] >= first_level
     default = (shown & (table["truncation"] == "phases") &
                (table["correction"] == "truncated"))
-    cycles = table["cycles"][default].astype(int)
-    worst = table["cycles"][shown & (table["truncation"] == "contact")].max()
     if not np.all(table["solved"][default] == 1):
         return "Truncation by phases does not converge on all levels"
-    failures = np.sum(table["solved"][shown] == 0)
-    lost = (f"and {failures} runs fail" if failures > 1 else
-            "and a run fails" if failures else "though nothing fails")
-    return (f"Truncation by phases takes {cycles.min()} to {cycles.max()} cycles "
-            f"for all coefficients of friction; with all contact nodes truncated "
-            f"it is up to {worst:.0f}, {lost}")
+    cycles = table["cycles"][default]
+    text = (f"The default takes {cycles.min():.0f} to {cycles.max():.0f} cycles, "
+            "whatever the friction")
+    others = [(words, outcome(table, shown, truncation)) for words, truncation in
+              (("with all contact nodes truncated", "contact"),
+               ("without second order", "phases without second order"))]
+    others = [f"{words} {result}" for words, result in others if result]
+    return "; ".join([text] + [", ".join(others)] if others else [text])
 
 
 def draw(data, output, name, subject, first_level):
@@ -39,7 +53,7 @@ def draw(data, output, name, subject, first_level):
     figure, axes = plt.subplots(len(CORRECTIONS), len(frictions),
                                 figsize=(7, 5), sharex=True, sharey=True,
                                 squeeze=False)
-    figure.subplots_adjust(left=0.085, right=0.985, top=0.83, bottom=0.15,
+    figure.subplots_adjust(left=0.095, right=0.985, bottom=0.15,
                            wspace=0.06, hspace=0.12)
     shown = table["level"] >= first_level
     most = table["cycles"][shown].max()
@@ -70,9 +84,18 @@ def draw(data, output, name, subject, first_level):
                     panel.annotate("fails", (x, y), xytext=(0, 6),
                                    textcoords="offset points", ha="center",
                                    color=color, fontsize=7)
-        row[0].set_ylabel(f"cycles to $10^{{-9}}$\n{correction} correction")
+        row[0].set_ylabel(f"{correction} correction\ncycles")
     for panel, friction in zip(axes[0], frictions):
         panel.set_title(rf"$\mathcal{{F}} = {friction:g}$")
+    # More than powers of ten where there are few of them.
+    span = np.log10(table["dofs"][shown].max() / table["dofs"][shown].min())
+    if span < 1.7:
+        low, high = axes[0, 0].get_xlim()
+        ticks = [factor * 10**power for power in range(1, 9)
+                 for factor in (1, 2, 5) if low < factor * 10**power < high]
+        axes[0, 0].set_xticks(ticks, [f"{tick:,}".replace(",", " ")
+                                      for tick in ticks])
+        axes[0, 0].minorticks_off()
     for panel in axes[-1]:
         panel.set_xlabel("degrees of freedom")
     handles, labels = axes[0, 0].get_legend_handles_labels()
@@ -82,5 +105,6 @@ def draw(data, output, name, subject, first_level):
                              r"by phases, without $\omega''$"}[label]
                             for label in labels],
                   loc="lower center", ncol=3, fontsize=8, handlelength=3)
-    headline(figure, message(table, first_level), subject)
+    axes_below(figure, headline(figure, message(table, first_level), subject),
+               0.27)
     save(figure, output, f"cycles-{name}.svg")

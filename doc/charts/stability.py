@@ -2,6 +2,7 @@
 amber where it took more than it should or needed help, red where it failed."""
 
 import csv
+import textwrap
 
 import numpy as np
 from matplotlib.patches import Rectangle
@@ -68,7 +69,7 @@ def draw(path, output):
     cell_width *= min(1.25, (7 - margin - 0.12) / (panel_width * per_row))
     n_rows = -(-len(solvers) // per_row)
     panel_height = cell_height * len(problems)
-    title_lines = 1 + len(message(columns)) // 77
+    title_lines = len(textwrap.wrap(message(columns), 77))
     slanted = max(map(len, sizes)) >= 6
     foot = 0.3 + (0.045 * max(map(len, sizes)) if slanted else 0.08)
     top, below, gap = 0.3 + 0.19 * title_lines, foot + 0.4, foot + 0.25

@@ -3,8 +3,8 @@ that are refined uniformly and adaptively."""
 
 import numpy as np
 
-from chart import (BLUE, RED, DataError, Table, crossing, grid, headline, plt, save,
-                   slope_triangle, times)
+from chart import (BLUE, RED, DataError, Table, axes_below, crossing, grid,
+                   headline, plt, save, slope_triangle, times)
 
 COLUMNS = ("dofs", "total_seconds", "energy_error", "pressure_error",
            "contact_half_width_error", "stick_half_width_error")
@@ -49,7 +49,7 @@ def draw(data, output, name, subject):
             raise DataError(f"{table.path}: an error of zero is not believable.")
     figure, axes = plt.subplots(4, 2, figsize=(7, 8.4), sharex="col",
                                 sharey="row")
-    figure.subplots_adjust(left=0.105, right=0.985, top=0.905, bottom=0.06,
+    figure.subplots_adjust(left=0.105, right=0.985, bottom=0.06,
                            hspace=0.25, wspace=0.06)
     for row, (quantity, label) in zip(axes, QUANTITIES):
         positive = np.concatenate([table[quantity][table[quantity] > 0]
@@ -85,5 +85,5 @@ def draw(data, output, name, subject):
                         transform=axes[0, 0].transAxes)
     axes[3, 0].set_xlabel("degrees of freedom")
     axes[3, 1].set_xlabel("seconds, all that led there included")
-    headline(figure, message(tables), subject)
+    axes_below(figure, headline(figure, message(tables), subject), 0.27)
     save(figure, output, f"work-precision-{name}.svg")
