@@ -102,8 +102,16 @@ namespace Tests
           discretization->dof_handler.n_dofs() >=
             parameters.refinement.maximum_dofs)
         return false;
+      refine(parameters.refinement.strategy);
+      return true;
+    }
+
+    /** Goes on to a next level in any case, refining as is said here. */
+    void
+    refine(const RefinementStrategy strategy)
+    {
       ++level;
-      if (parameters.refinement.strategy == RefinementStrategy::uniform)
+      if (strategy == RefinementStrategy::uniform)
         mesh->set_all_refine_flags();
       else
         mark();
@@ -145,7 +153,6 @@ namespace Tests
                   t(old_cell->vertex_dof_index(v, c));
               }
         }
-      return true;
     }
 
     const Parameters                                           parameters;

@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+"""Measures everything that the charts show and writes it into a folder:
+
+    make_data.py --bin2d=PROGRAM --bin3d=PROGRAM --precision=PROGRAM
+        --solvers=PROGRAM --scenes2d=FOLDER --scenes3d=FOLDER --runs=FOLDER
+        --data=FOLDER [--quick] [--only=PART,...]
+
+The parts are precision, cycles and solvers. What is measured, and on which
+meshes, stands in runs.py. Nothing is written of a
+run that did not end well; then this program does not, either."""
+
+import argparse
+import csv
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import h5py
+
+import runs
+from chart import DataError, Table
+
+BEGIN = time.monotonic()
+
+
+def say(text):
+    print(f"[{time.monotonic() - BEGIN:6.1f} s] {text}", flush=True)
+
+
+def run(command, log, allowed=(0,)):
+    """Runs a program with its output going to a file; its exit status."""
+    log.parent.mkdir(parents=True, exist_ok=True)
+    with open(log, "w") as file:
+        status = subprocess.run([str(word) for word in command], stdout=file,
+                                stderr=subprocess.STDOUT).returncode
+    if status not in allowed:
+        tail = "\n".join(log.read_text().splitlines()[-5:])
+        raise DataError(f"{' '.join(map(str, command))}\nended with status "
+                        f"{status}; the last lines of {log}:\n{tail}")
+    return status
+
+
+class Measurements:
+    def __init__(self, options):
+        self.options = options
+        self.runs, self.data = Path(options.runs), Path(options.data)
+        self.programs = {2: options.bin2d, 3: options.bin3d}
+        self.data.mkdir(parents=True, exist_ok=True)
+
+    def scene(self, dim, name):
+        return Path({2: self.options.scenes2d,
+                     3: self.options.scenes3d}[dim]) / f"{name}.prm"
+
+    def precision(self):
+        for what in runs.precision(self.options.quick):
+            half_widths = what.half_widths
+            for strategy in ("adaptive", "uniform"):
+                say(f"accuracy against work: {what.name}, {strategy}")
+                reference, overrides = getattr(what, strategy)
+                name = f"work-precision-{what.name}-{strategy}"
+                table = self.data / f"{name}.csv"
+                command = [self.options.precision, what.dim,
+                           self.scene(what.dim, what.scene),
+                           f"--table={table}",
+                           f"Refinement/Strategy={strategy}",
+                           *what.common, *overrides]
+                if reference:
+                    command.append(f"--reference={reference}")
+                if half_widths:
+                    command.append(f"--half-widths={half_widths}")
+                run(command, self.runs / f"{name}.log")
+                table = Table(table, ())
+                half_widths = (f"{table.remark('contact_half_width'):.12g},"
+                               f"{table.remark('stick_half_width'):.12g}")
+
+    def cycles(self):
+        for what in runs.cycles(self.options.quick):
+            rows = []
+            for friction in what.frictions:
+                for correction in runs.CORRECTIONS:
+                    for truncation in runs.TRUNCATIONS:
+                        say(f"cycles: {what.scene}, F = {friction}, "
+                            f"{correction}, {truncation}")
+                        rows += self.cycles_of(what, friction, correction,
+                                               truncation)
+            self.write(f"cycles-{what.name}.csv",
+                       ["friction", "truncation", "correction", "level", "dofs",
+                        "cycles", "solved"], rows)
+
+    def cycles_of(self, what, friction, correction, truncation):
+        name = f"{what.name}-{friction}-{correction}-{truncation}"
+        directory = self.runs / name.replace(" ", "-")
+        history = directory / "history.h5"
+        if history.exists():
+            history.unlink()
+        # Status 1 says that a level has not been solved, after its history was
+        # written: a result like any other.
+        status = run([self.programs[what.dim],
+                      self.scene(what.dim, what.scene),
+                      *what.overrides,
+                      f"Output/Directory={directory}", "Output/Fields=false",
+                      f"Contact/Friction coefficient={friction}",
+                      f"Solver/Coarse correction={correction}",
+                      f"Solver/Truncation={truncation}",
+                      f"Solver/Maximum cycles={runs.MOST_CYCLES}"],
+                     self.runs / f"{directory.name}.log", allowed=(0, 1))
+        with h5py.File(history) as file:
+            levels = {key: file["levels"][key][:]
+                      for key in ("level", "dofs", "cycles")}
+        last = len(levels["level"]) - 1
+        return [[friction, truncation, correction, levels["level"][i],
+                 levels["dofs"][i], levels["cycles"][i],
+                 int(not (status == 1 and i == last))]
+                for i in range(last + 1)]
+
+    def solvers(self):
+        if not self.options.solvers:
+            raise DataError("--solvers=PROGRAM is missing.")
+        for what in runs.solvers(self.options.quick):
+            say(f"all solvers: {what.name}")
+            files = {kind: self.data / f"{kind}-{what.name}.csv"
+                     for kind in ("scaling", "convergence")}
+            unfinished = {kind: file.with_suffix(".part")
+                          for kind, file in files.items()}
+            run([self.options.solvers, what.dim,
+                 self.scene(what.dim, what.scene), "--every-level",
+                 f"--table={unfinished['scaling']}",
+                 f"--history={unfinished['convergence']}",
+                 f"--seconds={2 if self.options.quick else runs.PATIENCE}",
+                 *what.overrides], self.runs / f"solvers-{what.name}.log")
+            for kind, file in files.items():
+                unfinished[kind].replace(file)
+
+    def write(self, name, header, rows):
+        part = (self.data / name).with_suffix(".part")
+        with open(part, "w", newline="") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(header)
+            writer.writerows(rows)
+        part.replace(self.data / name)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    for name in ("bin2d", "bin3d", "precision", "scenes2d", "scenes3d", "runs",
+                 "data"):
+        parser.add_argument(f"--{name}", required=True)
+    parser.add_argument("--solvers")
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--only", default=",".join(runs.PARTS))
+    options = parser.parse_args()
+    measurements = Measurements(options)
+    parts = {"precision": measurements.precision,
+             "cycles": measurements.cycles, "solvers": measurements.solvers}
+    try:
+        for part in options.only.split(","):
+            if part in parts:
+                parts[part]()
+            elif part not in runs.DRAWN_ONLY:
+                raise DataError(f"There is nothing called '{part}' to measure.")
+    except DataError as error:
+        sys.exit(str(error))
+    say("all data have been measured")
+
+
+if __name__ == "__main__":
+    main()
