@@ -184,6 +184,30 @@ namespace Benchmark
 
 
   template <int dim>
+  std::vector<double>
+  contact_stiffness(const RotatedProblem<dim> &rotated,
+                    const std::vector<char>   &in_zone)
+  {
+    const DiscreteProblem<dim> &problem = rotated.problem;
+    double                      size    = 0;
+    for (unsigned int p = 0; p < problem.contact.size(); ++p)
+      if (in_zone[p])
+        size += problem.contact[p].measure;
+    std::vector<double> stiffness;
+    for (const ContactNode<dim> &node : problem.contact)
+      {
+        const auto block =
+          rotated.block(node.node, problem.matrix.row_begin(node.node));
+        stiffness.push_back(
+          block[0] * std::pow(node.measure / std::max(size, node.measure),
+                              1. / (dim - 1)));
+      }
+    return stiffness;
+  }
+
+
+
+  template <int dim>
   void
   set_state(ContactState                          &state,
             const std::vector<LinearizedLaw<dim>> &laws,
@@ -213,6 +237,7 @@ namespace Benchmark
                                               const double,                   \
                                               const double *,                 \
                                               const double *);                \
+  template std::vector<double> contact_stiffness(const RotatedProblem<dim> &, const std::vector<char>   &); \
   template void set_state<dim>(ContactState &,                                \
                                const std::vector<LinearizedLaw<dim>> &,       \
                                const std::vector<double> &);

@@ -2,7 +2,8 @@
 #define friction_tests_benchmarks_coulomb_law_h
 
 #include <common/contact/contact_state.h>
-#include <common/solvers/discrete_problem.h>
+
+#include <tests/benchmarks/baselines/rotated_problem.h>
 
 #include <array>
 
@@ -88,6 +89,20 @@ namespace Benchmark
                                      const double            normal_force,
                                      const double           *u,
                                      const double           *r);
+
+  /**
+   * Stiffnesses c for the linearisation, one per contact node: what resists a
+   * motion of the contact zone as a whole, per node. That is far less than the
+   * diagonal of the matrix, the stiffness against the motion of one node alone,
+   * with which nodes at the border of the sticking zone keep changing from
+   * slip one way to slip the other way, and Newton's method takes a step per
+   * node. If h is the distance of nodes and L the size of the zone, a smooth
+   * motion has h/L times the stiffness of a rough one.
+   * @param in_zone  which contact nodes make up the zone.
+   */
+  template <int dim>
+  std::vector<double> contact_stiffness(const RotatedProblem<dim> &rotated,
+                                        const std::vector<char>   &in_zone);
 
   /** Sets the flags and normal forces of a state from phases and from forces
    * f - A u at the contact nodes, dim values each, in frames. */

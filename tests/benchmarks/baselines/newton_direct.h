@@ -51,7 +51,7 @@ namespace Benchmark
     const double                          F;
     std::vector<char>                     chosen;
     std::unique_ptr<StiffnessFactor<dim>> factor;
-    std::vector<double>                   b;
+    std::vector<double>                   stiffness, b;
 
     void make_factor();
     void choose_neighbors(const unsigned int n_layers);
