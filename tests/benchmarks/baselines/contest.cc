@@ -1,5 +1,8 @@
 #include <tests/benchmarks/baselines/contest.h>
+#include <tests/benchmarks/baselines/gauss_seidel.h>
+#include <tests/benchmarks/baselines/linear_cg.h>
 #include <tests/benchmarks/baselines/newton_direct.h>
+#include <tests/benchmarks/baselines/newton_gmres.h>
 
 #include <chrono>
 #include <cmath>
@@ -158,6 +161,7 @@ namespace Benchmark
     : nest(nest)
     , n_coarser(n_coarser)
     , seconds(seconds)
+    , points(node_points(*nest.discretization))
     , bonded(bond(nest.discretization->problem(), nest.displacement, nest.state))
     , nothing(nest.discretization->mapping,
               nest.discretization->dof_handler,
@@ -320,6 +324,25 @@ namespace Benchmark
     if (name == "newton direct" || name == "linear direct")
       {
         NewtonDirect<dim> solver(problem, u, state);
+        recorder.end_setup();
+        return solver.solve(u, state, watch);
+      }
+    if (name == "newton gmres")
+      {
+        NewtonGmres<dim> solver(problem, points, u, state);
+        recorder.end_setup();
+        return solver.solve(u, state, watch);
+      }
+    if (name == "linear cg+ml")
+      {
+        LinearCg<dim> solver(problem, points);
+        recorder.end_setup();
+        return solver.solve(u, watch);
+      }
+    if (name == "gauss-seidel")
+      {
+        GaussSeidel<dim> solver(
+          problem, nest.parameters.solver.inner_tolerance, seconds);
         recorder.end_setup();
         return solver.solve(u, state, watch);
       }

@@ -78,6 +78,7 @@ namespace Benchmark
 
     NestedIteration<dim>                 &nest;
     const double                          n_coarser, seconds;
+    const std::vector<Point<dim>>         points;
     NodalConstraints<dim>                 bonded;
     const ContactBoundary<dim>            nothing;
     VectorType                            u;
