@@ -1,0 +1,80 @@
+#include <deal.II/base/timer.h>
+
+#include <tests/benchmarks/baselines/gauss_seidel.h>
+
+#include <cmath>
+
+namespace Benchmark
+{
+  template <int dim>
+  GaussSeidel<dim>::GaussSeidel(const DiscreteProblem<dim> &problem,
+                                const double                tolerance,
+                                const double                seconds)
+    : problem(problem)
+    , tolerance(tolerance)
+    , seconds(seconds)
+    , smoother(problem.matrix,
+               problem.constraints,
+               problem.contact,
+               problem.effective_coefficient())
+  {}
+
+
+
+  template <int dim>
+  BaselineReport
+  GaussSeidel<dim>::solve(VectorType   &u,
+                          ContactState &state,
+                          const Watch  &watch)
+  {
+    // Sweeps are quickest several at a time. The increment is that of the last
+    // one, for which residuals are compared only now and then.
+    constexpr unsigned int                 n_at_a_time = 10;
+    BaselineReport                         report;
+    Timer                                  timer;
+    typename MonotoneSmoother<dim>::Sweeps what;
+    what.update_normal_forces      = problem.has_friction();
+    what.trust_first_normal_forces = true;
+    report.memory                  = smoother.memory_consumption();
+
+    VectorType residual(u), last_u, last_residual(u);
+    while (timer.wall_time() < seconds)
+      {
+        what.n = n_at_a_time - 1;
+        smoother.sweeps(u, problem.forces, state, what, &last_residual);
+        what.trust_first_normal_forces = false;
+        last_u                         = u;
+        what.n                         = 1;
+        smoother.sweeps(u, problem.forces, state, what, &residual);
+        report.iterations += n_at_a_time;
+
+        double increment = 0, norm = 0;
+        for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+          {
+            increment += (u.local_element(i) - last_u.local_element(i)) *
+              (last_residual.local_element(i) - residual.local_element(i));
+            norm += u.local_element(i) *
+              (problem.forces.local_element(i) - residual.local_element(i));
+          }
+        if (watch)
+          {
+            timer.stop();
+            watch([&]() { return u; });
+            timer.start();
+          }
+        if (!std::isfinite(increment))
+          break;
+        if (increment <= tolerance * tolerance * norm)
+          {
+            report.converged = true;
+            break;
+          }
+      }
+    return report;
+  }
+
+
+
+  template class GaussSeidel<2>;
+  template class GaussSeidel<3>;
+} // namespace Benchmark

@@ -1,0 +1,226 @@
+// The product against other solvers on the same discrete problem.
+//
+// A nested iteration by the product leads to the last level, where each solver
+// starts from the same initial guess, interpolated from the level before and
+// made admissible. All are judged by the same certificate, evaluated by the same
+// function for all of them.
+//
+// Usage: benchmark-solvers 2|3 scene.prm [--solvers=NAME,NAME,...]
+//            [--table=FILE] [--history=FILE] [--every-level] [--seconds=S]
+//            [Section/Entry=value ...]
+//
+// --table    one line of comma separated values per solver (and level).
+// --history  also the relative energy norm of the error after each iteration on
+//            the last level, against seconds since the start, set-up included.
+//            The reference is a solution by the product at a tolerance of
+//            1e-13; that of a linear solver, of its own linear problem.
+// --seconds  after which Gauss-Seidel is stopped; 120 by default.
+
+#include <deal.II/base/timer.h>
+#include <deal.II/base/utilities.h>
+
+#include <tests/benchmarks/baselines/contest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <string>
+#include <vector>
+
+namespace Benchmark
+{
+  struct Options
+  {
+    std::vector<std::string> solvers = solver_names();
+    std::string              table, history;
+    bool                     every_level = false;
+    double                   seconds     = 120;
+    std::vector<std::string> overrides;
+  };
+
+
+
+  Options
+  read_options(const int argc, char *argv[])
+  {
+    Options    options;
+    const auto value = [](const std::string &argument, const std::string &name) {
+      return argument.compare(0, name.size(), name) == 0
+        ? argument.substr(name.size())
+        : std::string();
+    };
+    for (int i = 3; i < argc; ++i)
+      {
+        const std::string argument = argv[i];
+        if (argument == "--every-level")
+          options.every_level = true;
+        else if (!value(argument, "--solvers=").empty())
+          options.solvers = Utilities::split_string_list(
+            value(argument, "--solvers="), ',');
+        else if (!value(argument, "--table=").empty())
+          options.table = value(argument, "--table=");
+        else if (!value(argument, "--history=").empty())
+          options.history = value(argument, "--history=");
+        else if (!value(argument, "--seconds=").empty())
+          options.seconds =
+            Utilities::string_to_double(value(argument, "--seconds="));
+        else if (argument.compare(0, 2, "--") == 0)
+          throw InputError("There is no option '" + argument + "'.");
+        else
+          options.overrides.push_back(argument);
+      }
+    for (const std::string &name : options.solvers)
+      if (std::find(solver_names().begin(), solver_names().end(), name) ==
+          solver_names().end())
+        {
+          std::string all;
+          for (const std::string &known : solver_names())
+            all += (all.empty() ? "" : ", ") + known;
+          throw InputError("There is no solver '" + name +
+                           "'. The solvers are: " + all + ".");
+        }
+    return options;
+  }
+
+
+
+  std::ofstream
+  open_file(const std::string &name)
+  {
+    std::ofstream file;
+    if (!name.empty())
+      {
+        file.open(name);
+        if (!file)
+          throw InputError("The file '" + name + "' cannot be written.");
+        file.precision(10);
+      }
+    return file;
+  }
+
+
+
+  // As NestedIteration::refine() will see it.
+  template <int dim>
+  bool
+  is_last(const NestedIteration<dim> &nest)
+  {
+    const auto &refinement = nest.parameters.refinement;
+    return nest.level >= refinement.levels ||
+      nest.discretization->dof_handler.n_dofs() >= refinement.maximum_dofs;
+  }
+
+
+
+  template <int dim>
+  void
+  run(const Parameters &parameters, const Options &options)
+  {
+    std::ofstream table = open_file(options.table);
+    std::ofstream history = open_file(options.history);
+    table << "scene,friction,poisson,level,dofs,contact,sticking,solver,"
+             "converged,iterations,inner_iterations,setup_seconds,"
+             "solve_seconds,memory_bytes,certificate,energy"
+          << std::endl;
+    std::printf("%-22s %5s %8s %8s %8s  %-4s %5s %6s %9s %9s %8s %9s %16s\n",
+                "solver",
+                "level",
+                "dofs",
+                "contact",
+                "sticking",
+                "ok",
+                "iter.",
+                "inner",
+                "set-up",
+                "solve",
+                "MB",
+                "certif.",
+                "energy");
+
+    NestedIteration<dim> nest(parameters);
+    bool                 more      = true;
+    double               n_coarser = 0;
+    while (more)
+      {
+        std::cerr << "level " << nest.level << ", "
+                  << nest.discretization->dof_handler.n_dofs() << " dofs"
+                  << std::endl;
+        nest.solve();
+        const bool last = is_last(nest);
+        if (last || options.every_level)
+          {
+            Contest<dim> contest(nest, n_coarser, options.seconds);
+            if (last && !options.history.empty())
+              {
+                std::cerr << "reference solution" << std::endl;
+                contest.keep_history(history);
+              }
+            for (const std::string &name : options.solvers)
+              {
+                std::cerr << name << std::endl;
+                const Result r = contest.run(name);
+                table << parameters.name << ','
+                      << parameters.contact.friction_coefficient << ','
+                      << parameters.material.poisson_ratio() << ',' << nest.level
+                      << ',' << nest.discretization->dof_handler.n_dofs() << ','
+                      << r.n_contact << ',' << r.n_sticking << ',' << name
+                      << ',' << r.converged << ',' << r.iterations << ','
+                      << r.inner_iterations << ',' << r.setup_seconds << ','
+                      << r.solve_seconds << ',' << r.memory << ','
+                      << r.certificate << ',' << r.energy << std::endl;
+                std::printf("%-22s %5u %8u %8u %8u  %-4s %5u %6u %9.3f %9.3f "
+                            "%8.1f %9.1e %16.9e\n",
+                            name.c_str(),
+                            nest.level,
+                            static_cast<unsigned int>(
+                              nest.discretization->dof_handler.n_dofs()),
+                            r.n_contact,
+                            r.n_sticking,
+                            r.converged ? "yes" : "no",
+                            r.iterations,
+                            r.inner_iterations,
+                            r.setup_seconds,
+                            r.solve_seconds,
+                            1e-6 * r.memory,
+                            r.certificate,
+                            r.energy);
+                std::fflush(stdout);
+              }
+          }
+        n_coarser = nest.discretization->dof_handler.n_dofs();
+        more      = nest.refine();
+      }
+  }
+} // namespace Benchmark
+
+
+
+int
+main(int argc, char *argv[])
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  try
+    {
+      const std::string dimension = argc < 3 ? "" : argv[1];
+      if (dimension != "2" && dimension != "3")
+        {
+          std::cerr << "Usage: benchmark-solvers 2|3 scene.prm "
+                       "[--solvers=NAME,...] [--table=FILE] [--history=FILE] "
+                       "[--every-level] [--seconds=S] "
+                       "[Section/Entry=value ...]\n";
+          return 2;
+        }
+      const Benchmark::Options options = Benchmark::read_options(argc, argv);
+      const Friction::Parameters parameters =
+        Friction::read_parameters(argv[2], options.overrides);
+      if (dimension == "2")
+        Benchmark::run<2>(parameters, options);
+      else
+        Benchmark::run<3>(parameters, options);
+    }
+  catch (const std::exception &error)
+    {
+      std::cerr << error.what() << std::endl;
+      return 1;
+    }
+}
