@@ -29,6 +29,14 @@ namespace Benchmark
     /// Set-up: everything between the assembled matrix and the first iteration.
     double setup_seconds = 0, solve_seconds = 0;
 
+    /// The product's safeguards: how many attempts were made, and the name of
+    /// the last one if there were several.
+    unsigned int n_attempts = 1;
+    std::string  attempt;
+
+    /// Why a solver has stopped, if it has said so.
+    std::string failure;
+
     std::size_t memory      = 0; ///< of the solver, without the matrix
     double      certificate = 0; ///< its largest number
     double      energy      = 0;
@@ -50,10 +58,12 @@ namespace Benchmark
      * @param n_coarser  number of degrees of freedom on the level before; zero
      *                   if there is none.
      * @param seconds    time after which Gauss-Seidel is stopped.
+     * @param limit      time after which any solver is stopped, and has failed.
      */
     Contest(NestedIteration<dim> &nest,
             const double          n_coarser,
-            const double          seconds);
+            const double          seconds,
+            const double          limit);
 
     /** From now on errors are written to @p out after each iteration, compared
      * with a solution that is computed now. */
@@ -76,26 +86,26 @@ namespace Benchmark
   private:
     class Recorder;
 
-    NestedIteration<dim>                 &nest;
-    const double                          n_coarser, seconds;
-    const std::vector<Point<dim>>         points;
-    NodalConstraints<dim>                 bonded;
-    const ContactBoundary<dim>            nothing;
-    VectorType                            u;
-    ContactState                          state = ContactState(0, false);
-    std::ostream                         *history = nullptr;
-    std::map<bool, VectorType>            references; // is it linear?
+    NestedIteration<dim>         &nest;
+    const double                  n_coarser, seconds, limit;
+    const std::vector<Point<dim>> points;
+    NodalConstraints<dim>         bonded;
+    const ContactBoundary<dim>    nothing;
+    VectorType                    u;
+    ContactState                  state   = ContactState(0, false);
+    std::ostream                 *history = nullptr;
+    std::map<bool, VectorType>    references; // is it linear?
 
-    SolverSettings  settings_of(const std::string &name) const;
-    BaselineReport  run(const std::string          &name,
-                        const DiscreteProblem<dim> &problem,
-                        Recorder                   &recorder);
-    BaselineReport  run_product(const SolverSettings       &settings,
-                                const DiscreteProblem<dim> &problem,
-                                Recorder                   &recorder);
-    VectorType      reference(const DiscreteProblem<dim> &problem);
-    void            start(const DiscreteProblem<dim> &problem);
-    Result          judge(const DiscreteProblem<dim> &problem) const;
+    SolverSettings settings_of(const std::string &name) const;
+    BaselineReport run(const std::string          &name,
+                       const DiscreteProblem<dim> &problem,
+                       Recorder                   &recorder);
+    BaselineReport run_product(const SolverSettings       &settings,
+                               const DiscreteProblem<dim> &problem,
+                               Recorder                   &recorder);
+    VectorType     reference(const DiscreteProblem<dim> &problem);
+    void           start(const DiscreteProblem<dim> &problem);
+    Result         judge(const DiscreteProblem<dim> &problem) const;
   };
 } // namespace Benchmark
 
