@@ -10,8 +10,8 @@
 // the others that are the product are variants without them.
 //
 // Usage: benchmark-solvers 2|3 scene.prm [--solvers=NAME,NAME,...]
-//            [--table=FILE] [--history=FILE] [--every-level] [--seconds=S]
-//            [--limit=S] [--guess=NAME] [--inclusion=FACTOR]
+//            [--table=FILE] [--history=FILE] [--every-level] [--levels=L,L,...]
+//            [--seconds=S] [--limit=S] [--guess=NAME] [--inclusion=FACTOR]
 //            [Section/Entry=value ...]
 //
 // --table    one line of comma separated values per solver (and level).
@@ -21,6 +21,7 @@
 //            1e-13; that of a linear solver, of its own linear problem.
 // --solvers  all but "default" if not given.
 // --seconds  after which Gauss-Seidel is stopped; 120 by default.
+// --levels   those on which the solvers run, in place of the last one.
 // --limit    seconds after which any solver is stopped, and has failed.
 // --guess    interpolated (that of the nested iteration), or another one on the
 //            first mesh: zero, random, inside, lifted; see guesses.h.
@@ -38,6 +39,7 @@
 #include <tests/benchmarks/baselines/contest.h>
 #include <tests/benchmarks/guesses.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
@@ -53,9 +55,10 @@ namespace Benchmark
     std::vector<std::string> solvers;
     std::string              table, history, guess = "interpolated";
     bool                     every_level = false;
-    double                   seconds     = 120;
-    double                   limit       = std::numeric_limits<double>::max();
-    double                   inclusion   = 1;
+    std::vector<int>         levels;
+    double                   seconds   = 120;
+    double                   limit     = std::numeric_limits<double>::max();
+    double                   inclusion = 1;
     std::vector<std::string> overrides;
   };
 
@@ -86,6 +89,9 @@ namespace Benchmark
         else if (!value(argument, "--seconds=").empty())
           options.seconds =
             Utilities::string_to_double(value(argument, "--seconds="));
+        else if (!value(argument, "--levels=").empty())
+          options.levels = Utilities::string_to_int(
+            Utilities::split_string_list(value(argument, "--levels="), ','));
         else if (!value(argument, "--limit=").empty())
           options.limit =
             Utilities::string_to_double(value(argument, "--limit="));
@@ -262,8 +268,13 @@ namespace Benchmark
           }
         else
           solve_level(nest, options.limit);
-        const bool last = given || is_last(nest);
-        if (last || options.every_level)
+        const bool last   = given || is_last(nest);
+        const bool wanted = options.levels.empty()
+          ? last || options.every_level
+          : std::find(options.levels.begin(),
+                      options.levels.end(),
+                      nest.level) != options.levels.end();
+        if (wanted)
           {
             Contest<dim> contest(
               nest, n_coarser, options.seconds, options.limit);
@@ -326,7 +337,8 @@ main(int argc, char *argv[])
         {
           std::cerr << "Usage: benchmark-solvers 2|3 scene.prm "
                        "[--solvers=NAME,...] [--table=FILE] [--history=FILE] "
-                       "[--every-level] [--seconds=S] [--limit=S] "
+                       "[--every-level] [--levels=L,...] "
+                       "[--seconds=S] [--limit=S] "
                        "[--guess=NAME] [--inclusion=FACTOR] "
                        "[Section/Entry=value ...]\n";
           return 2;
