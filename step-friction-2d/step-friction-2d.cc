@@ -848,8 +848,9 @@ namespace StepFriction2d
 
         // A level without a certified solution is the end: what is wrong on
         // this mesh would only be interpolated to the next one. The certificate
-        // tells which law is violated. If $\mathcal F$ is large, Algorithm 2
-        // with <code>Outer damping</code> below one may still converge.
+        // tells which law is violated. By then everything has been tried that
+        // the solver knows. If the first mesh is the one that fails, a coarser
+        // one may give it a better guess to start from.
         if (!report.converged)
           {
             output.add_failure(level, report);

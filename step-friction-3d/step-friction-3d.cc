@@ -57,7 +57,6 @@ namespace StepFriction3d
   using namespace dealii;
   using namespace Friction;
 
-
   // @sect3{The <code>ContactProblem</code> class}
 
   // This is the class of step-friction-2d, and its members and most of its
@@ -88,9 +87,8 @@ namespace StepFriction3d
     bool run(const Start start);
 
   private:
-    // The functions in the order in which they are called. There is one more
-    // than in two dimensions, because there is more to say about the contact
-    // boundary.
+    // The functions in the order in which they are called, one more than in two
+    // dimensions.
     unsigned int make_first_mesh(const Start start);
 
     void setup_system();

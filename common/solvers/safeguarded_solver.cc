@@ -2,7 +2,9 @@
 #include <common/solvers/safeguarded_solver.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <sstream>
 
 namespace Friction
 {
@@ -186,10 +188,8 @@ namespace Friction
                                              problem.friction_law,
                                              coefficient};
 
-    std::string name = "Algorithm 2 with mixed normal forces";
-    if (coefficient < problem.effective_coefficient())
-      name += " and coefficient " + std::to_string(coefficient);
-    SolverReport report;
+    const std::string name = "Algorithm 2 with mixed normal forces";
+    SolverReport      report;
     {
       CoulombSolver<dim> solver(hierarchy, with_coefficient, mixed);
       report = attempt(name, solver, iterate, all, progress);
@@ -207,7 +207,7 @@ namespace Friction
 
 
   // The coefficient is doubled for as long as that works, and multiplied by the
-  // square root of the last factor where it does not.
+  // square root of the last factor where it does not. All of it is one attempt.
   template <int dim>
   SolverReport
   SafeguardedSolver<dim>::continuation(Iterate        &iterate,
@@ -219,14 +219,14 @@ namespace Friction
     constexpr double easy            = .25;
     constexpr double smallest_factor = 1.05;
     double           solved = 0, factor = 2;
-    SolverReport     report;
+    SolverReport     report, steps;
     while (solved < target)
       {
         const double coefficient = solved == 0
           ? std::min(easy, target / 2)
           : std::min(solved * factor, target);
         Iterate      next        = iterate;
-        report = mixed_algorithm_2(coefficient, next, all, progress);
+        report = mixed_algorithm_2(coefficient, next, steps, progress);
         if (report.converged)
           {
             solved  = coefficient;
@@ -240,6 +240,16 @@ namespace Friction
           }
       }
     report.converged = report.converged && solved == target;
+
+    std::ostringstream name;
+    name << "continuation from less friction, up to the coefficient " << solved
+         << ",";
+    all.attempts.push_back({name.str(),
+                            static_cast<unsigned int>(steps.cycles.size()),
+                            report.converged,
+                            report.certificate.largest()});
+    all.cycles.insert(
+      all.cycles.end(), steps.cycles.begin(), steps.cycles.end());
     return report;
   }
 
