@@ -199,7 +199,7 @@ namespace Benchmark
         const auto block =
           rotated.block(node.node, problem.matrix.row_begin(node.node));
         stiffness.push_back(
-          block[0] * std::pow(node.measure / std::max(size, node.measure),
+          3. * block[0] * std::pow(node.measure / std::max(size, node.measure),
                               1. / (dim - 1)));
       }
     return stiffness;

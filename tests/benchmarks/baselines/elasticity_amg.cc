@@ -46,7 +46,8 @@ namespace Benchmark
                                     const std::vector<Point<dim>> &points,
                                     const std::vector<char>       &fixed,
                                     const ContactBlocks<dim>      &second)
-    : fixed(fixed)
+    : inverse_diagonal(dim * rotated.problem.contact.size(), 0.)
+    , contact(rotated.problem.contact)
   {
     const std::size_t           before = resident_memory();
     const NodeBlockMatrix<dim> &A      = rotated.problem.matrix;
@@ -61,6 +62,17 @@ namespace Benchmark
             number[i] = nodes.size();
             nodes.push_back(i);
           }
+      }
+    for (unsigned int p = 0; p < contact.size(); ++p)
+      {
+        const unsigned int node = contact[p].node;
+        const auto         A_pp = rotated.block(node, A.row_begin(node));
+        for (unsigned int e = 0; e < dim; ++e)
+          if (fixed[dim * node + e] && !rotated.is_fixed(dim * node + e))
+            inverse_diagonal[dim * p + e] =
+              1. /
+              (A_pp[e * dim + e] +
+               (second.empty() ? 0. : second[p][e * dim + e]));
       }
     const int n = dim * nodes.size();
     data        = std::make_unique<Data>(n);
@@ -186,6 +198,12 @@ namespace Benchmark
     for (std::size_t i = 0; i < nodes.size(); ++i)
       for (unsigned int d = 0; d < dim; ++d)
         z.local_element(dim * nodes[i] + d) = out[dim * i + d];
+    for (unsigned int p = 0; p < contact.size(); ++p)
+      for (unsigned int e = 0; e < dim; ++e)
+        if (inverse_diagonal[dim * p + e] != 0)
+          z.local_element(dim * contact[p].node + e) =
+            inverse_diagonal[dim * p + e] *
+            r.local_element(dim * contact[p].node + e);
   }
 
 

@@ -122,7 +122,7 @@ namespace Benchmark
           x[e] = prescribed[e - 1];
         iterate.laws[i] = linearize<dim>(node,
                                          F,
-                                         (getenv("CS")?atof(getenv("CS")):1.)*stiffness[factor->nodes()[i]],
+                                         stiffness[factor->nodes()[i]],
                                          x.data(),
                                          r.data(),
                                          given_bounds == nullptr
@@ -236,7 +236,6 @@ namespace Benchmark
             evaluate(iterate, frozen > 0 ? &bounds : nullptr);
             accepted = iterate.violation <= (1 - 1e-4 * length) * largest;
           }
-        if (getenv("DBG")) { unsigned nc=0,ns=0,nsl=0; for (auto&l:iterate.laws) {nc+=l.phase!=Phase::open; ns+=l.phase==Phase::stick; nsl+=l.phase==Phase::slip;} fprintf(stderr,"   step %u violation %.3e force %.3e contact %u stick %u accepted %d frozen %u\n",report.iterations,iterate.violation,iterate.largest_force,nc,ns,accepted,frozen);}
         if (watch)
           watch([&]() { return displacement(iterate.x); });
         if (!std::isfinite(iterate.violation))

@@ -261,8 +261,6 @@ namespace Benchmark
           {
             vmult(w, Z[k]);
             double *h = &H[k * (restart + 1)];
-            // Twice is enough for orthogonality up to rounding; once does not
-            // suffice where a thousand is gained or more.
             for (unsigned int i = 0; i <= k; ++i)
               {
                 h[i] = product(w, Z[i]);
@@ -387,10 +385,19 @@ namespace Benchmark
           energy = product(in_frames, f);
         }
         const double target = tolerance * std::sqrt(std::max(energy, 1e-300));
-        if (getenv("DBG")) { unsigned nc=0,ns=0; for (auto&l:laws) {nc+=l.phase!=Phase::open; ns+=l.phase==Phase::stick;} fprintf(stderr,"   step %u size %.3e known %.3e target %.3e contact %u stick %u inner %u\n",report.iterations,size,std::sqrt(known),target,nc,ns,report.inner_iterations);}
         if (!std::isfinite(size))
           return report;
-        if (size <= target)
+        // Where the slip is tiny a wrong direction of friction costs next to
+        // no energy: the law is to hold as such, too.
+        double violation = 0, force = 0;
+        for (unsigned int p = 0; p < laws.size(); ++p)
+          {
+            violation = std::max(violation, laws[p].violation);
+            const std::size_t dof = dim * rotated.problem.contact[p].node;
+            force = std::max(force, std::abs(r.local_element(dof)));
+          }
+        const bool lawful = report.iterations > 0 && violation <= 1e-7 * force;
+        if (size <= target && lawful)
           {
             report.converged = true;
             break;
@@ -399,8 +406,11 @@ namespace Benchmark
           break;
 
         // The forcing term, choice 2 of Eisenstat and Walker with their
-        // safeguard, and no more accurately than is needed in the end.
-        const double largest = 0.1, gamma = 0.9;
+        // safeguard, and no more accurately than is needed in the end. More
+        // than a hundredth to begin with, as is often recommended, leaves so
+        // much in the forces that phases are told wrongly: a third more
+        // iterations and twice the steps on the half disc.
+        const double largest = 0.01, gamma = 0.9;
         double       forcing = largest;
         if (report.iterations > 0)
           {
@@ -409,7 +419,7 @@ namespace Benchmark
               forcing = std::max(forcing, gamma * last_forcing * last_forcing);
             forcing = std::min(forcing, largest);
           }
-        forcing      = std::max(forcing, 0.5 * target / size);
+        forcing = std::max(forcing, std::min(largest, 0.5 * target / size));
         last_size    = size;
         last_forcing = forcing;
 
