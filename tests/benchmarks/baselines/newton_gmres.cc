@@ -13,8 +13,8 @@ namespace Benchmark
     double
     product(const VectorType &a, const VectorType &b)
     {
-      double       sum = 0;
-      const auto  *x = a.begin(), *y = b.begin();
+      double            sum = 0;
+      const auto       *x = a.begin(), *y = b.begin();
       const std::size_t n = a.locally_owned_size();
       for (std::size_t i = 0; i < n; ++i)
         sum += x[i] * y[i];
@@ -48,7 +48,7 @@ namespace Benchmark
     for (unsigned int p = 0; p < laws.size(); ++p)
       {
         const ContactNode<dim> &node = problem.contact[p];
-        laws[p] = linearize_guess<dim>(node,
+        laws[p]                      = linearize_guess<dim>(node,
                                        F,
                                        state.in_contact(p),
                                        state.normal_force(p),
@@ -70,7 +70,7 @@ namespace Benchmark
     for (unsigned int p = 0; p < laws.size(); ++p)
       {
         const ContactNode<dim> &node = rotated.problem.contact[p];
-        laws[p] = linearize<dim>(node,
+        laws[p]                      = linearize<dim>(node,
                                  F,
                                  stiffness[p],
                                  in_frames.begin() + dim * node.node,
@@ -146,11 +146,10 @@ namespace Benchmark
         const unsigned int node = rotated.problem.contact[p].node;
         const auto         A =
           rotated.block(node, rotated.problem.matrix.row_begin(node));
-        const Eigen::Map<const Matrix> D(A.data()), before(amg_second[p].data()),
-          now(present[p].data());
+        const Eigen::Map<const Matrix> D(A.data()),
+          before(amg_second[p].data()), now(present[p].data());
         const Eigen::LLT<Matrix> C(D + before), C_now(D + now);
-        const Matrix             X =
-          C_now.matrixU().solve(Matrix(C.matrixU()));
+        const Matrix             X = C_now.matrixU().solve(Matrix(C.matrixU()));
         std::copy(X.data(), X.data() + dim * dim, scaling[p].begin());
       }
   }
@@ -180,7 +179,7 @@ namespace Benchmark
     amg->vmult(z, s);
     for (unsigned int p = 0; p < laws.size(); ++p)
       {
-        double    *v = z.begin() + dim * rotated.problem.contact[p].node;
+        double    *v  = z.begin() + dim * rotated.problem.contact[p].node;
         const auto Xv = times<dim>(scaling[p].data(), v);
         std::copy(Xv.begin(), Xv.end(), v);
       }
@@ -218,12 +217,12 @@ namespace Benchmark
   // also M^{-1} q is kept, which is what the next one is made of anyway.
   template <int dim>
   unsigned int
-  NewtonGmres<dim>::gmres(VectorType        &v,
-                          VectorType         R,
-                          VectorType         z,
-                          const double       target,
-                          const VectorType  &u,
-                          const Watch       &watch) const
+  NewtonGmres<dim>::gmres(VectorType       &v,
+                          VectorType        R,
+                          VectorType        z,
+                          const double      target,
+                          const VectorType &u,
+                          const Watch      &watch) const
   {
     unsigned int            n = 0;
     std::vector<VectorType> Q, Z;
@@ -248,8 +247,8 @@ namespace Benchmark
         double beta = std::sqrt(std::max(0., product(R, z)));
         if (beta <= target || n >= maximum_iterations)
           return n;
-        std::vector<double> H((restart + 1) * restart, 0.),
-          g(restart + 1, 0.), cosine(restart), sine(restart);
+        std::vector<double> H((restart + 1) * restart, 0.), g(restart + 1, 0.),
+          cosine(restart), sine(restart);
         g[0] = beta;
         Q.assign(1, R);
         Z.assign(1, z);
@@ -322,8 +321,8 @@ namespace Benchmark
                           const Watch  &watch)
   {
     BaselineReport report;
-    report.memory = amg->memory_consumption();
-    VectorType r  = rotated.residual(u), R(r), v(r), z(r);
+    report.memory        = amg->memory_consumption();
+    VectorType r         = rotated.residual(u), R(r), v(r), z(r);
     double     last_size = 0, last_forcing = 0;
     while (true)
       {
@@ -331,13 +330,13 @@ namespace Benchmark
         scale_preconditioner();
 
         // What is known of the step, and the right hand side of the rest.
-        v = 0.;
+        v        = 0.;
         bool any = false;
         for (unsigned int p = 0; p < laws.size(); ++p)
           if (laws[p].phase != Phase::open)
             {
-              const std::size_t dof    = dim * rotated.problem.contact[p].node;
-              v.local_element(dof)     = laws[p].normal_step;
+              const std::size_t dof = dim * rotated.problem.contact[p].node;
+              v.local_element(dof)  = laws[p].normal_step;
               for (unsigned int t = 0;
                    t < rotated.problem.contact[p].n_free_tangents;
                    ++t)
@@ -392,7 +391,7 @@ namespace Benchmark
         double violation = 0, force = 0;
         for (unsigned int p = 0; p < laws.size(); ++p)
           {
-            violation = std::max(violation, laws[p].violation);
+            violation             = std::max(violation, laws[p].violation);
             const std::size_t dof = dim * rotated.problem.contact[p].node;
             force = std::max(force, std::abs(r.local_element(dof)));
           }
@@ -419,13 +418,12 @@ namespace Benchmark
               forcing = std::max(forcing, gamma * last_forcing * last_forcing);
             forcing = std::min(forcing, largest);
           }
-        forcing = std::max(forcing, std::min(largest, 0.5 * target / size));
-        last_size    = size;
+        forcing   = std::max(forcing, std::min(largest, 0.5 * target / size));
+        last_size = size;
         last_forcing = forcing;
 
         ++report.iterations;
-        report.inner_iterations +=
-          gmres(v, R, z, forcing * size, u, watch);
+        report.inner_iterations += gmres(v, R, z, forcing * size, u, watch);
         rotated.from_frames(v);
         u += v;
         r = rotated.residual(u);
