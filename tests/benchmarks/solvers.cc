@@ -41,12 +41,15 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include <unistd.h>
 
 namespace Benchmark
 {
@@ -329,6 +332,14 @@ namespace Benchmark
 int
 main(int argc, char *argv[])
 {
+  // CHOLMOD starts threads of its own, and OpenBLAS likewise, which cannot be
+  // told otherwise once they are loaded: one core for all.
+  if (std::getenv("OMP_THREAD_LIMIT") == nullptr)
+    {
+      setenv("OMP_THREAD_LIMIT", "1", 1);
+      setenv("OPENBLAS_NUM_THREADS", "1", 1);
+      execv("/proc/self/exe", argv);
+    }
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   try
     {

@@ -4,6 +4,7 @@
 #include <tests/benchmarks/baselines/report.h>
 #include <tests/support/nested_iteration.h>
 
+#include <limits>
 #include <map>
 #include <ostream>
 #include <string>
@@ -63,7 +64,7 @@ namespace Benchmark
     Contest(NestedIteration<dim> &nest,
             const double          n_coarser,
             const double          seconds,
-            const double          limit);
+            const double          limit = std::numeric_limits<double>::max());
 
     /** From now on errors are written to @p out after each iteration, compared
      * with a solution that is computed now. */
