@@ -74,6 +74,10 @@ namespace Friction
                                    SolverReport   &all,
                                    const Progress &progress) const;
 
+    SolverReport careful_algorithm_2(Iterate        &iterate,
+                                     SolverReport   &all,
+                                     const Progress &progress) const;
+
     SolverReport continuation(Iterate        &iterate,
                               SolverReport   &all,
                               const Progress &progress) const;

@@ -74,6 +74,10 @@ def judge(solver, row):
         return ["red", iterations,
                 f"certificate {float(row['certificate']):.0e} after "
                 f"{iterations} iterations"]
+    if (solver == "gauss-seidel" and
+            float(row["solve_seconds"]) >= runs.LIMIT_OF_RELAXATION):
+        return ["amber", "", "stopped after "
+                f"{runs.LIMIT_OF_RELAXATION} seconds, and solved"]
     if int(row["attempts"]) > 1:
         return ["amber", iterations,
                 f"attempt {row['attempts']}: {row['attempt']}"]
@@ -198,7 +202,8 @@ class Measurements:
         command = [self.options.solvers, case.dim,
                    self.scene(case.dim, case.scene),
                    f"--solvers={','.join(what.solvers)}",
-                   f"--limit={runs.LIMIT}", f"--seconds={runs.LIMIT_OF_RELAXATION}",
+                   f"--limit={runs.LIMIT}",
+                   f"--seconds={runs.LIMIT_OF_RELAXATION}",
                    *case.options, *case.overrides]
         given = any(option.startswith("--guess=") for option in case.options)
         results = {}

@@ -173,7 +173,7 @@ MAPPED = ("default", "algorithm 3", "algorithm 2", "algorithm 3 monotone",
 # after so many times that). Gauss-Seidel, which has no notion of failure, is
 # stopped earlier.
 GOOD_CYCLES, GOOD_STEPS = 30, 20
-LIMIT, LIMIT_OF_CASE = 20, 20
+LIMIT, LIMIT_OF_CASE = 60, 10
 LIMIT_OF_RELAXATION = 2
 
 

@@ -184,6 +184,9 @@ namespace Benchmark
         SafeguardedSolver<dim> solver(
           *d.hierarchy, problem, nest.parameters.solver);
         nest.report = solver.solve(nest.displacement, nest.state, progress);
+        if (!nest.report.attempts.empty())
+          std::cerr << "  level " << nest.level << ": "
+                    << describe_attempts(nest.report) << std::endl;
         if (!nest.report.converged)
           std::cerr << "  level " << nest.level
                     << " was not solved: " << nest.report.certificate.describe()
