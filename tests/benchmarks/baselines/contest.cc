@@ -242,8 +242,8 @@ namespace Benchmark
     settings.maximum_cycles  = 60;
     const LevelHierarchy<dim> hierarchy(
       nest.discretization->dof_handler, problem.constraints, problem.matrix);
-    SafeguardedSolver<dim> solver(hierarchy, problem, settings);
-    const SolverReport     report = solver.solve(u, state);
+    CoulombSolver<dim> solver(hierarchy, problem, settings);
+    const SolverReport report = solver.solve(u, state);
     std::cerr << "  " << report.cycles.size() << " cycles, last increment "
               << (report.cycles.empty() ? 0. : report.cycles.back().increment)
               << ", certificate " << report.certificate.largest() << std::endl;
