@@ -63,7 +63,9 @@ def draw(path, output):
     # Panels side by side, as many as fit into the width of a page.
     longest = max(len(problem) for problem in problems)
     margin = 0.35 + 0.068 * longest
-    cell_width, cell_height = 0.42, 0.26
+    # The name of a solver must fit above its panel.
+    name_width = 0.066 * max(map(len, solvers))
+    cell_width, cell_height = max(0.42, name_width / len(sizes)), 0.26
     panel_width = cell_width * len(sizes) + 0.16
     per_row = int(np.clip((7 - margin) // panel_width, 1, len(solvers)))
     cell_width *= min(1.25, (7 - margin - 0.12) / (panel_width * per_row))
