@@ -62,7 +62,8 @@ def draw(path, output):
 
     # Panels side by side, as many as fit into the width of a page.
     longest = max(len(problem) for problem in problems)
-    margin = 0.35 + 0.068 * longest
+    margin = max(0.35 + 0.068 * longest,
+                 0.2 + 0.06 * len(columns["problem_axis"][0]))
     # The name of a solver must fit above its panel.
     name_width = 0.066 * max(map(len, solvers))
     cell_width, cell_height = max(0.42, name_width / len(sizes)), 0.26
@@ -71,7 +72,9 @@ def draw(path, output):
     cell_width *= min(1.25, (7 - margin - 0.12) / (panel_width * per_row))
     n_rows = -(-len(solvers) // per_row)
     panel_height = cell_height * len(problems)
-    title_lines = len(textwrap.wrap(message(columns), 77))
+    subject = f"Map: {columns['map'][0]}. Numbers are iterations."
+    title_lines = (len(textwrap.wrap(message(columns), 77)) +
+                   0.8 * (len(textwrap.wrap(subject, 111)) - 1))
     slanted = max(map(len, sizes)) >= 6
     foot = 0.3 + (0.045 * max(map(len, sizes)) if slanted else 0.08)
     top, below, gap = 0.3 + 0.19 * title_lines, foot + 0.4, foot + 0.25
@@ -105,8 +108,7 @@ def draw(path, output):
             for c, size in enumerate(sizes):
                 draw_cell(axes, c, r, cells.get((solver, problem, size)))
     legend(figure, height)
-    headline(figure, message(columns), f"Map: {columns['map'][0]}. "
-             "Numbers are iterations.")
+    headline(figure, message(columns), subject)
     name = "stability-" + path.stem.replace("stability-", "") + ".svg"
     save(figure, output, name)
 
