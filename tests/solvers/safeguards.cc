@@ -176,7 +176,8 @@ namespace
 
 
 
-  // With hardly any cycles nothing can be solved, and that is what is said.
+  // Nobody satisfies the laws to the last digit. If that is what is asked for,
+  // everything is tried, and what is said in the end is that it was not enough.
   void
   test_failure()
   {
@@ -190,6 +191,7 @@ namespace
     check(!report.converged, "it is not solved");
     for (const SolverAttempt &attempt : report.attempts)
       std::cout << attempt.name << std::endl;
+    check_below(report.certificate.largest(), 1e-8, "almost it is");
   }
 } // namespace
 
