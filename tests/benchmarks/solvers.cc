@@ -2,8 +2,8 @@
 //
 // A nested iteration by the product leads to the last level, where each solver
 // starts from the same initial guess, interpolated from the level before and
-// made admissible. All are judged by the same certificate, evaluated by the same
-// function for all of them.
+// made admissible. All are judged by the same certificate, evaluated by the
+// same function for all of them.
 //
 // Usage: benchmark-solvers 2|3 scene.prm [--solvers=NAME,NAME,...]
 //            [--table=FILE] [--history=FILE] [--every-level] [--seconds=S]
@@ -21,11 +21,15 @@
 
 #include <tests/benchmarks/baselines/contest.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <string>
 #include <vector>
+
+#include <unistd.h>
 
 namespace Benchmark
 {
@@ -44,7 +48,8 @@ namespace Benchmark
   read_options(const int argc, char *argv[])
   {
     Options    options;
-    const auto value = [](const std::string &argument, const std::string &name) {
+    const auto value = [](const std::string &argument,
+                          const std::string &name) {
       return argument.compare(0, name.size(), name) == 0
         ? argument.substr(name.size())
         : std::string();
@@ -55,8 +60,8 @@ namespace Benchmark
         if (argument == "--every-level")
           options.every_level = true;
         else if (!value(argument, "--solvers=").empty())
-          options.solvers = Utilities::split_string_list(
-            value(argument, "--solvers="), ',');
+          options.solvers =
+            Utilities::split_string_list(value(argument, "--solvers="), ',');
         else if (!value(argument, "--table=").empty())
           options.table = value(argument, "--table=");
         else if (!value(argument, "--history=").empty())
@@ -116,7 +121,7 @@ namespace Benchmark
   void
   run(const Parameters &parameters, const Options &options)
   {
-    std::ofstream table = open_file(options.table);
+    std::ofstream table   = open_file(options.table);
     std::ofstream history = open_file(options.history);
     table << "scene,friction,poisson,level,dofs,contact,sticking,solver,"
              "converged,iterations,inner_iterations,setup_seconds,"
@@ -161,8 +166,9 @@ namespace Benchmark
                 const Result r = contest.run(name);
                 table << parameters.name << ','
                       << parameters.contact.friction_coefficient << ','
-                      << parameters.material.poisson_ratio() << ',' << nest.level
-                      << ',' << nest.discretization->dof_handler.n_dofs() << ','
+                      << parameters.material.poisson_ratio() << ','
+                      << nest.level << ','
+                      << nest.discretization->dof_handler.n_dofs() << ','
                       << r.n_contact << ',' << r.n_sticking << ',' << name
                       << ',' << r.converged << ',' << r.iterations << ','
                       << r.inner_iterations << ',' << r.setup_seconds << ','
@@ -198,6 +204,14 @@ namespace Benchmark
 int
 main(int argc, char *argv[])
 {
+  // CHOLMOD starts threads of its own, and OpenBLAS likewise, which cannot be
+  // told otherwise once they are loaded: one core for all.
+  if (std::getenv("OMP_THREAD_LIMIT") == nullptr)
+    {
+      setenv("OMP_THREAD_LIMIT", "1", 1);
+      setenv("OPENBLAS_NUM_THREADS", "1", 1);
+      execv("/proc/self/exe", argv);
+    }
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   try
     {
@@ -210,7 +224,7 @@ main(int argc, char *argv[])
                        "[Section/Entry=value ...]\n";
           return 2;
         }
-      const Benchmark::Options options = Benchmark::read_options(argc, argv);
+      const Benchmark::Options   options = Benchmark::read_options(argc, argv);
       const Friction::Parameters parameters =
         Friction::read_parameters(argv[2], options.overrides);
       if (dimension == "2")

@@ -189,6 +189,7 @@ namespace
     ContactState       state(0, false);
     const SolverReport report = solve(p, u, state);
     check(!report.converged, "it is not solved");
+    std::cout << report.certificate.describe() << " conv " << report.converged << " " << report.cycles.size() << std::endl;
     for (const SolverAttempt &attempt : report.attempts)
       std::cout << attempt.name << std::endl;
     check_below(report.certificate.largest(), 1e-8, "almost it is");

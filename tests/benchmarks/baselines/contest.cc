@@ -22,10 +22,10 @@ namespace Benchmark
       for (unsigned int p = 0; p < problem.contact.size(); ++p)
         if (state.in_contact(p))
           for (unsigned int d = 0; d < dim; ++d)
-            bonded.prescribe(problem.contact[p].node,
-                             d,
-                             u.local_element(dim * problem.contact[p].node +
-                                             d));
+            bonded.prescribe(
+              problem.contact[p].node,
+              d,
+              u.local_element(dim * problem.contact[p].node + d));
       bonded.update_ghosts();
       return bonded;
     }
@@ -162,7 +162,8 @@ namespace Benchmark
     , n_coarser(n_coarser)
     , seconds(seconds)
     , points(node_points(*nest.discretization))
-    , bonded(bond(nest.discretization->problem(), nest.displacement, nest.state))
+    , bonded(
+        bond(nest.discretization->problem(), nest.displacement, nest.state))
     , nothing(nest.discretization->mapping,
               nest.discretization->dof_handler,
               nest.discretization->hanging,
@@ -220,11 +221,10 @@ namespace Benchmark
       }
     SolverSettings settings  = nest.parameters.solver;
     settings.inner_tolerance = 1e-13;
-    const LevelHierarchy<dim> hierarchy(nest.discretization->dof_handler,
-                                        problem.constraints,
-                                        problem.matrix);
-    CoulombSolver<dim>        solver(hierarchy, problem, settings);
-    const SolverReport        report = solver.solve(u, state);
+    const LevelHierarchy<dim> hierarchy(
+      nest.discretization->dof_handler, problem.constraints, problem.matrix);
+    CoulombSolver<dim> solver(hierarchy, problem, settings);
+    const SolverReport report = solver.solve(u, state);
     std::cerr << "  " << report.cycles.size() << " cycles, last increment "
               << (report.cycles.empty() ? 0. : report.cycles.back().increment)
               << ", certificate " << report.certificate.largest() << std::endl;
@@ -257,11 +257,10 @@ namespace Benchmark
       {
         VectorType difference(nest.guess);
         difference -= references[false];
-        const double d =
-          energy_norm(contact, difference) / energy_norm(contact, references[false]);
-        const double q =
-          std::pow(n_coarser / nest.discretization->dof_handler.n_dofs(),
-                   1. / dim);
+        const double d = energy_norm(contact, difference) /
+          energy_norm(contact, references[false]);
+        const double q = std::pow(
+          n_coarser / nest.discretization->dof_handler.n_dofs(), 1. / dim);
         out << "# discretisation_error=" << d * q / std::sqrt(1 - q * q)
             << std::endl;
       }
@@ -293,10 +292,9 @@ namespace Benchmark
                             const DiscreteProblem<dim> &problem,
                             Recorder                   &recorder)
   {
-    const LevelHierarchy<dim> hierarchy(nest.discretization->dof_handler,
-                                        problem.constraints,
-                                        problem.matrix);
-    CoulombSolver<dim>        solver(hierarchy, problem, settings);
+    const LevelHierarchy<dim> hierarchy(
+      nest.discretization->dof_handler, problem.constraints, problem.matrix);
+    CoulombSolver<dim> solver(hierarchy, problem, settings);
     recorder.end_setup();
     const SolverReport solution =
       solver.solve(u, state, [&](const unsigned int, const double) {
@@ -305,8 +303,8 @@ namespace Benchmark
     BaselineReport report;
     report.converged  = solution.converged;
     report.iterations = solution.cycles.size();
-    report.memory     = hierarchy.memory_consumption() +
-      solver.multigrid().memory_consumption();
+    report.memory =
+      hierarchy.memory_consumption() + solver.multigrid().memory_consumption();
     return report;
   }
 

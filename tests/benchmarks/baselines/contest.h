@@ -76,26 +76,26 @@ namespace Benchmark
   private:
     class Recorder;
 
-    NestedIteration<dim>                 &nest;
-    const double                          n_coarser, seconds;
-    const std::vector<Point<dim>>         points;
-    NodalConstraints<dim>                 bonded;
-    const ContactBoundary<dim>            nothing;
-    VectorType                            u;
-    ContactState                          state = ContactState(0, false);
-    std::ostream                         *history = nullptr;
-    std::map<bool, VectorType>            references; // is it linear?
+    NestedIteration<dim>         &nest;
+    const double                  n_coarser, seconds;
+    const std::vector<Point<dim>> points;
+    NodalConstraints<dim>         bonded;
+    const ContactBoundary<dim>    nothing;
+    VectorType                    u;
+    ContactState                  state   = ContactState(0, false);
+    std::ostream                 *history = nullptr;
+    std::map<bool, VectorType>    references; // is it linear?
 
-    SolverSettings  settings_of(const std::string &name) const;
-    BaselineReport  run(const std::string          &name,
-                        const DiscreteProblem<dim> &problem,
-                        Recorder                   &recorder);
-    BaselineReport  run_product(const SolverSettings       &settings,
-                                const DiscreteProblem<dim> &problem,
-                                Recorder                   &recorder);
-    VectorType      reference(const DiscreteProblem<dim> &problem);
-    void            start(const DiscreteProblem<dim> &problem);
-    Result          judge(const DiscreteProblem<dim> &problem) const;
+    SolverSettings settings_of(const std::string &name) const;
+    BaselineReport run(const std::string          &name,
+                       const DiscreteProblem<dim> &problem,
+                       Recorder                   &recorder);
+    BaselineReport run_product(const SolverSettings       &settings,
+                               const DiscreteProblem<dim> &problem,
+                               Recorder                   &recorder);
+    VectorType     reference(const DiscreteProblem<dim> &problem);
+    void           start(const DiscreteProblem<dim> &problem);
+    Result         judge(const DiscreteProblem<dim> &problem) const;
   };
 } // namespace Benchmark
 

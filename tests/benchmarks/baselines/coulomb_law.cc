@@ -47,7 +47,7 @@ namespace Benchmark
     {
       const bool         given = given_bound >= 0;
       const unsigned int n     = node.n_free_tangents;
-      double             size = prescribed * prescribed;
+      double             size  = prescribed * prescribed;
       for (unsigned int t = 0; t < n; ++t)
         size += u[t + 1] * u[t + 1];
       size = std::sqrt(size);
@@ -57,9 +57,8 @@ namespace Benchmark
           law.rhs[s] =
             r[s + 1] - u[s + 1] / size * (given ? given_bound : F * r[0]);
           for (unsigned int t = 0; t < n; ++t)
-            law.second[s * (dim - 1) + t] =
-              (given ? given_bound : F * tau) / size *
-              ((s == t ? 1. : 0.) - u[s + 1] * u[t + 1] / (size * size));
+            law.second[s * (dim - 1) + t] = (given ? given_bound : F * tau) /
+              size * ((s == t ? 1. : 0.) - u[s + 1] * u[t + 1] / (size * size));
         }
     }
   } // namespace
@@ -98,8 +97,7 @@ namespace Benchmark
         }
     else if (const double prescribed = prescribed_slip<dim>(node, u))
       {
-        linearize_smooth<dim>(
-          law, node, F, tau, prescribed, u, r, given_bound);
+        linearize_smooth<dim>(law, node, F, tau, prescribed, u, r, given_bound);
         for (unsigned int t = 0; t < n; ++t)
           violation += std::pow(law.rhs[t], 2);
       }
@@ -162,9 +160,9 @@ namespace Benchmark
     LinearizedLaw<dim> law;
     if (!in_contact)
       return law;
-    law.normal_step      = node.gap - u[0];
-    law.phase            = Phase::slip;
-    const unsigned int n = node.n_free_tangents;
+    law.normal_step         = node.gap - u[0];
+    law.phase               = Phase::slip;
+    const unsigned int n    = node.n_free_tangents;
     double             slip = 0;
     for (unsigned int t = 0; t < dim - 1; ++t)
       slip += u[t + 1] * u[t + 1];
@@ -199,8 +197,9 @@ namespace Benchmark
         const auto block =
           rotated.block(node.node, problem.matrix.row_begin(node.node));
         stiffness.push_back(
-          block[0] * std::pow(node.measure / std::max(size, node.measure),
-                              1. / (dim - 1)));
+          3. * block[0] *
+          std::pow(node.measure / std::max(size, node.measure),
+                   1. / (dim - 1)));
       }
     return stiffness;
   }
@@ -224,22 +223,23 @@ namespace Benchmark
 
 
 
-#define INSTANTIATE(dim)                                                      \
-  template LinearizedLaw<dim> linearize(const ContactNode<dim> &,             \
-                                        const double,                         \
-                                        const double,                         \
-                                        const double *,                       \
-                                        const double *,                       \
-                                        const double);                        \
-  template LinearizedLaw<dim> linearize_guess(const ContactNode<dim> &,       \
-                                              const double,                   \
-                                              const bool,                     \
-                                              const double,                   \
-                                              const double *,                 \
-                                              const double *);                \
-  template std::vector<double> contact_stiffness(const RotatedProblem<dim> &, const std::vector<char>   &); \
-  template void set_state<dim>(ContactState &,                                \
-                               const std::vector<LinearizedLaw<dim>> &,       \
+#define INSTANTIATE(dim)                                                               \
+  template LinearizedLaw<dim>  linearize(const ContactNode<dim> &,                     \
+                                         const double,                                 \
+                                         const double,                                 \
+                                         const double *,                               \
+                                         const double *,                               \
+                                         const double);                                \
+  template LinearizedLaw<dim>  linearize_guess(const ContactNode<dim> &,               \
+                                               const double,                           \
+                                               const bool,                             \
+                                               const double,                           \
+                                               const double *,                         \
+                                               const double *);                        \
+  template std::vector<double> contact_stiffness(const RotatedProblem<dim> &,          \
+                                                 const std::vector<char> &);           \
+  template void                set_state<dim>(ContactState &,                          \
+                               const std::vector<LinearizedLaw<dim>> &, \
                                const std::vector<double> &);
   INSTANTIATE(2)
   INSTANTIATE(3)

@@ -10,8 +10,8 @@
 
 namespace Benchmark
 {
-  /** Blocks to be added to the diagonal blocks of contact nodes, in frames; none
-   * or one per contact node. */
+  /** Blocks to be added to the diagonal blocks of contact nodes, in frames;
+   * none or one per contact node. */
   template <int dim>
   using ContactBlocks = std::vector<NodeBlock<dim>>;
 
@@ -21,7 +21,8 @@ namespace Benchmark
    * told the rigid body modes, rotations included, as near null space.
    *
    * Components that are held fixed get a row of their own with nothing but the
-   * diagonal.
+   * diagonal, and nodes that are held entirely take no part. Since contact
+   * nodes may come loose later, vmult() divides their values by the diagonal.
    */
   template <int dim>
   class ElasticityAmg
@@ -39,11 +40,11 @@ namespace Benchmark
 
     ~ElasticityAmg();
 
-    /** z = M^{-1} r, in frames; components held fixed are those of neither. */
+    /** z = M^{-1} r, in frames. */
     void vmult(VectorType &z, const VectorType &r) const;
 
-    /** What the memory of the process grew by during set-up: nobody keeps
-     * accounts inside of ML. */
+    /** What the memory that the process has allocated grew by during set-up:
+     * nobody keeps accounts inside of ML. */
     std::size_t
     memory_consumption() const
     {
@@ -53,16 +54,12 @@ namespace Benchmark
   private:
     struct Data;
 
-    const std::vector<char>   fixed;
-    std::unique_ptr<Data>     data;
-    std::vector<unsigned int> nodes; // that are not entirely fixed
-    std::size_t               memory;
+    std::unique_ptr<Data>       data;
+    std::vector<unsigned int>   nodes;            // that are not entirely fixed
+    std::vector<double>         inverse_diagonal; // of what is held in contact
+    const ContactBoundary<dim> &contact;
+    std::size_t                 memory;
   };
-
-
-
-  /** Bytes that the process holds at present. */
-  std::size_t resident_memory();
 } // namespace Benchmark
 
 #endif

@@ -37,8 +37,8 @@ namespace Benchmark
   LinearCg<dim>::solve(VectorType &u, const Watch &watch)
   {
     BaselineReport report;
-    report.memory = amg.memory_consumption();
-    VectorType r  = rotated.residual(u), z(r), p(r), Ap(r);
+    report.memory     = amg.memory_consumption();
+    VectorType r      = rotated.residual(u), z(r), p(r), Ap(r);
     double     energy = 0;
     for (std::size_t i = 0; i < fixed.size(); ++i)
       {

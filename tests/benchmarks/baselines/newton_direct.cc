@@ -112,22 +112,19 @@ namespace Benchmark
       {
         const ContactNode<dim> &node =
           rotated.problem.contact[factor->nodes()[i]];
-        const NodeValue<dim> r = at_node(iterate.r, i);
-        NodeValue<dim>       x = at_node(iterate.x, i);
-        const auto           prescribed =
-          tangential_components<dim>(node,
-                                     rotated.problem.constraints
-                                       .prescribed_values());
+        const NodeValue<dim> r          = at_node(iterate.r, i);
+        NodeValue<dim>       x          = at_node(iterate.x, i);
+        const auto           prescribed = tangential_components<dim>(
+          node, rotated.problem.constraints.prescribed_values());
         for (unsigned int e = node.n_free_tangents + 1; e < dim; ++e)
           x[e] = prescribed[e - 1];
-        iterate.laws[i] = linearize<dim>(node,
-                                         F,
-                                         (getenv("CS")?atof(getenv("CS")):1.)*stiffness[factor->nodes()[i]],
-                                         x.data(),
-                                         r.data(),
-                                         given_bounds == nullptr
-                                           ? -1.
-                                           : (*given_bounds)[i]);
+        iterate.laws[i] =
+          linearize<dim>(node,
+                         F,
+                         stiffness[factor->nodes()[i]],
+                         x.data(),
+                         r.data(),
+                         given_bounds == nullptr ? -1. : (*given_bounds)[i]);
         iterate.violation += std::pow(iterate.laws[i].violation, 2);
         for (const double force : r)
           iterate.largest_force =
@@ -161,8 +158,8 @@ namespace Benchmark
             else
               {
                 unknowns.push_back(k);
-                rhs.push_back(law.phase == Phase::open ? iterate.r[k] :
-                                                         law.rhs[k - n - 1]);
+                rhs.push_back(law.phase == Phase::open ? iterate.r[k]
+                                                       : law.rhs[k - n - 1]);
                 continue;
               }
             known[k] = 1;
@@ -223,12 +220,11 @@ namespace Benchmark
       {
         const std::vector<double> v = newton_step(iterate);
         ++report.iterations;
-        const std::vector<double> x = iterate.x;
-        const double              largest =
-          violations.empty()
-                         ? 1e300
-                         : *std::max_element(violations.begin(), violations.end());
-        bool accepted = false;
+        const std::vector<double> x        = iterate.x;
+        const double              largest  = violations.empty()
+                        ? 1e300
+                        : *std::max_element(violations.begin(), violations.end());
+        bool                      accepted = false;
         for (double length = 1.; length > 0.05 && !accepted; length /= 2)
           {
             for (std::size_t i = 0; i < x.size(); ++i)
@@ -236,7 +232,6 @@ namespace Benchmark
             evaluate(iterate, frozen > 0 ? &bounds : nullptr);
             accepted = iterate.violation <= (1 - 1e-4 * length) * largest;
           }
-        if (getenv("DBG")) { unsigned nc=0,ns=0,nsl=0; for (auto&l:iterate.laws) {nc+=l.phase!=Phase::open; ns+=l.phase==Phase::stick; nsl+=l.phase==Phase::slip;} fprintf(stderr,"   step %u violation %.3e force %.3e contact %u stick %u accepted %d frozen %u\n",report.iterations,iterate.violation,iterate.largest_force,nc,ns,accepted,frozen);}
         if (watch)
           watch([&]() { return displacement(iterate.x); });
         if (!std::isfinite(iterate.violation))

@@ -56,8 +56,8 @@ namespace Benchmark
     void make_factor();
     void choose_neighbors(const unsigned int n_layers);
 
-    NodeValue<dim>
-    at_node(const std::vector<double> &values, const unsigned int i) const;
+    NodeValue<dim> at_node(const std::vector<double> &values,
+                           const unsigned int         i) const;
 
     void                evaluate(Iterate                   &iterate,
                                  const std::vector<double> *given_bounds = nullptr) const;

@@ -13,8 +13,8 @@ namespace Benchmark
     double
     product(const VectorType &a, const VectorType &b)
     {
-      double       sum = 0;
-      const auto  *x = a.begin(), *y = b.begin();
+      double            sum = 0;
+      const auto       *x = a.begin(), *y = b.begin();
       const std::size_t n = a.locally_owned_size();
       for (std::size_t i = 0; i < n; ++i)
         sum += x[i] * y[i];
@@ -48,7 +48,7 @@ namespace Benchmark
     for (unsigned int p = 0; p < laws.size(); ++p)
       {
         const ContactNode<dim> &node = problem.contact[p];
-        laws[p] = linearize_guess<dim>(node,
+        laws[p]                      = linearize_guess<dim>(node,
                                        F,
                                        state.in_contact(p),
                                        state.normal_force(p),
@@ -70,7 +70,7 @@ namespace Benchmark
     for (unsigned int p = 0; p < laws.size(); ++p)
       {
         const ContactNode<dim> &node = rotated.problem.contact[p];
-        laws[p] = linearize<dim>(node,
+        laws[p]                      = linearize<dim>(node,
                                  F,
                                  stiffness[p],
                                  in_frames.begin() + dim * node.node,
@@ -146,11 +146,10 @@ namespace Benchmark
         const unsigned int node = rotated.problem.contact[p].node;
         const auto         A =
           rotated.block(node, rotated.problem.matrix.row_begin(node));
-        const Eigen::Map<const Matrix> D(A.data()), before(amg_second[p].data()),
-          now(present[p].data());
+        const Eigen::Map<const Matrix> D(A.data()),
+          before(amg_second[p].data()), now(present[p].data());
         const Eigen::LLT<Matrix> C(D + before), C_now(D + now);
-        const Matrix             X =
-          C_now.matrixU().solve(Matrix(C.matrixU()));
+        const Matrix             X = C_now.matrixU().solve(Matrix(C.matrixU()));
         std::copy(X.data(), X.data() + dim * dim, scaling[p].begin());
       }
   }
@@ -180,7 +179,7 @@ namespace Benchmark
     amg->vmult(z, s);
     for (unsigned int p = 0; p < laws.size(); ++p)
       {
-        double    *v = z.begin() + dim * rotated.problem.contact[p].node;
+        double    *v  = z.begin() + dim * rotated.problem.contact[p].node;
         const auto Xv = times<dim>(scaling[p].data(), v);
         std::copy(Xv.begin(), Xv.end(), v);
       }
@@ -218,12 +217,12 @@ namespace Benchmark
   // also M^{-1} q is kept, which is what the next one is made of anyway.
   template <int dim>
   unsigned int
-  NewtonGmres<dim>::gmres(VectorType        &v,
-                          VectorType         R,
-                          VectorType         z,
-                          const double       target,
-                          const VectorType  &u,
-                          const Watch       &watch) const
+  NewtonGmres<dim>::gmres(VectorType       &v,
+                          VectorType        R,
+                          VectorType        z,
+                          const double      target,
+                          const VectorType &u,
+                          const Watch      &watch) const
   {
     unsigned int            n = 0;
     std::vector<VectorType> Q, Z;
@@ -248,8 +247,8 @@ namespace Benchmark
         double beta = std::sqrt(std::max(0., product(R, z)));
         if (beta <= target || n >= maximum_iterations)
           return n;
-        std::vector<double> H((restart + 1) * restart, 0.),
-          g(restart + 1, 0.), cosine(restart), sine(restart);
+        std::vector<double> H((restart + 1) * restart, 0.), g(restart + 1, 0.),
+          cosine(restart), sine(restart);
         g[0] = beta;
         Q.assign(1, R);
         Z.assign(1, z);
@@ -261,8 +260,6 @@ namespace Benchmark
           {
             vmult(w, Z[k]);
             double *h = &H[k * (restart + 1)];
-            // Twice is enough for orthogonality up to rounding; once does not
-            // suffice where a thousand is gained or more.
             for (unsigned int i = 0; i <= k; ++i)
               {
                 h[i] = product(w, Z[i]);
@@ -324,8 +321,8 @@ namespace Benchmark
                           const Watch  &watch)
   {
     BaselineReport report;
-    report.memory = amg->memory_consumption();
-    VectorType r  = rotated.residual(u), R(r), v(r), z(r);
+    report.memory        = amg->memory_consumption();
+    VectorType r         = rotated.residual(u), R(r), v(r), z(r);
     double     last_size = 0, last_forcing = 0;
     while (true)
       {
@@ -333,13 +330,13 @@ namespace Benchmark
         scale_preconditioner();
 
         // What is known of the step, and the right hand side of the rest.
-        v = 0.;
+        v        = 0.;
         bool any = false;
         for (unsigned int p = 0; p < laws.size(); ++p)
           if (laws[p].phase != Phase::open)
             {
-              const std::size_t dof    = dim * rotated.problem.contact[p].node;
-              v.local_element(dof)     = laws[p].normal_step;
+              const std::size_t dof = dim * rotated.problem.contact[p].node;
+              v.local_element(dof)  = laws[p].normal_step;
               for (unsigned int t = 0;
                    t < rotated.problem.contact[p].n_free_tangents;
                    ++t)
@@ -387,10 +384,19 @@ namespace Benchmark
           energy = product(in_frames, f);
         }
         const double target = tolerance * std::sqrt(std::max(energy, 1e-300));
-        if (getenv("DBG")) { unsigned nc=0,ns=0; for (auto&l:laws) {nc+=l.phase!=Phase::open; ns+=l.phase==Phase::stick;} fprintf(stderr,"   step %u size %.3e known %.3e target %.3e contact %u stick %u inner %u\n",report.iterations,size,std::sqrt(known),target,nc,ns,report.inner_iterations);}
         if (!std::isfinite(size))
           return report;
-        if (size <= target)
+        // Where the slip is tiny a wrong direction of friction costs next to
+        // no energy: the law is to hold as such, too.
+        double violation = 0, force = 0;
+        for (unsigned int p = 0; p < laws.size(); ++p)
+          {
+            violation             = std::max(violation, laws[p].violation);
+            const std::size_t dof = dim * rotated.problem.contact[p].node;
+            force = std::max(force, std::abs(r.local_element(dof)));
+          }
+        const bool lawful = report.iterations > 0 && violation <= 1e-7 * force;
+        if (size <= target && lawful)
           {
             report.converged = true;
             break;
@@ -399,8 +405,11 @@ namespace Benchmark
           break;
 
         // The forcing term, choice 2 of Eisenstat and Walker with their
-        // safeguard, and no more accurately than is needed in the end.
-        const double largest = 0.1, gamma = 0.9;
+        // safeguard, and no more accurately than is needed in the end. More
+        // than a hundredth to begin with, as is often recommended, leaves so
+        // much in the forces that phases are told wrongly: a third more
+        // iterations and twice the steps on the half disc.
+        const double largest = 0.01, gamma = 0.9;
         double       forcing = largest;
         if (report.iterations > 0)
           {
@@ -409,13 +418,12 @@ namespace Benchmark
               forcing = std::max(forcing, gamma * last_forcing * last_forcing);
             forcing = std::min(forcing, largest);
           }
-        forcing      = std::max(forcing, 0.5 * target / size);
-        last_size    = size;
+        forcing   = std::max(forcing, std::min(largest, 0.5 * target / size));
+        last_size = size;
         last_forcing = forcing;
 
         ++report.iterations;
-        report.inner_iterations +=
-          gmres(v, R, z, forcing * size, u, watch);
+        report.inner_iterations += gmres(v, R, z, forcing * size, u, watch);
         rotated.from_frames(v);
         u += v;
         r = rotated.residual(u);

@@ -64,19 +64,18 @@ namespace Benchmark
     void               fix_components();
     void               make_preconditioner();
     void               scale_preconditioner();
-    void               linearize_all(const VectorType &u,
-                                     const VectorType &r);
-    void vmult(VectorType &y, const VectorType &x) const;
-    void precondition(VectorType &z, const VectorType &r) const;
+    void               linearize_all(const VectorType &u, const VectorType &r);
+    void               vmult(VectorType &y, const VectorType &x) const;
+    void               precondition(VectorType &z, const VectorType &r) const;
 
     // Improves v until the residual, initially R with z = M^{-1} R, is at most
     // the target. Returns the number of iterations.
-    unsigned int gmres(VectorType        &v,
-                       VectorType         R,
-                       VectorType         z,
-                       const double       target,
-                       const VectorType  &u,
-                       const Watch       &watch) const;
+    unsigned int gmres(VectorType       &v,
+                       VectorType        R,
+                       VectorType        z,
+                       const double      target,
+                       const VectorType &u,
+                       const Watch      &watch) const;
   };
 } // namespace Benchmark
 

@@ -35,7 +35,8 @@ namespace Benchmark
       return fixed.size();
     }
 
-    /** The number of the contact node at a node, or numbers::invalid_unsigned_int.
+    /** The number of the contact node at a node, or
+     * numbers::invalid_unsigned_int.
      */
     unsigned int
     contact_number(const unsigned int node) const

@@ -22,11 +22,8 @@ extern "C"
                double       *b,
                const int    *ldb,
                int          *info);
-  void dlauum_(const char *part,
-               const int  *n,
-               double     *a,
-               const int  *lda,
-               int        *info);
+  void
+  dlauum_(const char *part, const int *n, double *a, const int *lda, int *info);
   // Only OpenBLAS has it.
   void openblas_set_num_threads(int) __attribute__((weak));
 }
@@ -157,9 +154,8 @@ namespace Benchmark
   StiffnessFactor<dim>::order_other_nodes() const
   {
     const NodeBlockMatrix<dim> &A = rotated.problem.matrix;
-    std::vector<unsigned int>   number(A.n_rows(),
-                                     numbers::invalid_unsigned_int);
-    std::vector<char>           is_last(A.n_rows(), 0);
+    std::vector<unsigned int> number(A.n_rows(), numbers::invalid_unsigned_int);
+    std::vector<char>         is_last(A.n_rows(), 0);
     for (const unsigned int p : last)
       is_last[rotated.problem.contact[p].node] = 1;
     std::vector<unsigned int> nodes;
@@ -180,8 +176,14 @@ namespace Benchmark
       return nodes;
 
     cholmod_common &common = cholmod->common;
-    cholmod_sparse *graph  = cholmod_l_allocate_sparse(
-      nodes.size(), nodes.size(), n_entries, 0, 1, -1, CHOLMOD_PATTERN, &common);
+    cholmod_sparse *graph  = cholmod_l_allocate_sparse(nodes.size(),
+                                                      nodes.size(),
+                                                      n_entries,
+                                                      0,
+                                                      1,
+                                                      -1,
+                                                      CHOLMOD_PATTERN,
+                                                      &common);
     cholmod->check(graph != nullptr, "allocate memory");
     auto       *starts  = static_cast<SuiteSparse_long *>(graph->p);
     auto       *entries = static_cast<SuiteSparse_long *>(graph->i);
@@ -216,7 +218,7 @@ namespace Benchmark
   void
   StiffnessFactor<dim>::factorize()
   {
-    const NodeBlockMatrix<dim> &A = rotated.problem.matrix;
+    const NodeBlockMatrix<dim> &A    = rotated.problem.matrix;
     constexpr std::size_t       none = -1;
     std::vector<std::size_t>    row_of(rotated.n_dofs(), none);
     for (std::size_t i = 0; i < order.size(); ++i)
@@ -303,7 +305,7 @@ namespace Benchmark
 
     // Reversed in both directions L_cc is an upper triangular matrix U, and
     // U U^T is what LAPACK has a routine for.
-    DenseMatrix U(m);
+    DenseMatrix      U(m);
     std::vector<int> reversed(m);
     int              next = m;
     for (const SuiteSparse_long number : cholmod->dense_number)
@@ -329,9 +331,9 @@ namespace Benchmark
   std::vector<double>
   StiffnessFactor<dim>::reduce(const VectorType &b)
   {
-    cholmod_common &common = cholmod->common;
-    const auto &L           = *cholmod->factor;
-    const auto *permutation = static_cast<const SuiteSparse_long *>(L.Perm);
+    cholmod_common &common      = cholmod->common;
+    const auto     &L           = *cholmod->factor;
+    const auto     *permutation = static_cast<const SuiteSparse_long *>(L.Perm);
     cholmod_dense  *right_hand_side =
       cholmod_l_allocate_dense(L.n, 1, L.n, CHOLMOD_REAL, &common);
     cholmod->check(right_hand_side != nullptr, "allocate memory");
@@ -364,13 +366,13 @@ namespace Benchmark
   {
     cholmod_common &common = cholmod->common;
     const auto     &L      = *cholmod->factor;
-    AssertThrow(cholmod->right_hand_side != nullptr && values.size() == n_dense(),
+    AssertThrow(cholmod->right_hand_side != nullptr &&
+                  values.size() == n_dense(),
                 ExcInternalError());
 
     // Backward substitution gives the chosen nodes their values if their part
     // of the right hand side is L_cc^T times these.
-    cholmod_dense *b =
-      cholmod_l_copy_dense(cholmod->right_hand_side, &common);
+    cholmod_dense *b = cholmod_l_copy_dense(cholmod->right_hand_side, &common);
     cholmod->check(b != nullptr, "allocate memory");
     auto *y = static_cast<double *>(b->x);
     for (const std::size_t row : cholmod->dense_rows)
