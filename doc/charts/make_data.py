@@ -127,7 +127,7 @@ class Measurements:
                  self.scene(what.dim, what.scene), "--every-level",
                  f"--table={unfinished['scaling']}",
                  f"--history={unfinished['convergence']}",
-                 f"--seconds={2 if self.options.quick else runs.PATIENCE}",
+                 f"--seconds={runs.patience(self.options.quick)}",
                  *what.overrides], self.runs / f"solvers-{what.name}.log")
             for kind, file in files.items():
                 unfinished[kind].replace(file)

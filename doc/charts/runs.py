@@ -115,8 +115,9 @@ def levels(initial, number):
             f"Refinement/Levels={number}", "Refinement/Maximum dofs=100000000"]
 
 
-# After this many seconds on a level an opponent that does not arrive is stopped.
-PATIENCE = 10
+def patience(quick):
+    """After this many seconds on a level Gauss-Seidel is stopped."""
+    return 2 if quick else 10
 
 
 def solvers(quick):
