@@ -88,8 +88,8 @@ def draw_solver(panel, table, values, solved, solver, failures):
     if x.max() < 0.3 * table["dofs"].max():
         # The line ends early, and has its name there.
         panel.annotate(f"{solver}  {growth(x, y)}",
-                       (x.max(), y[np.argmax(x)]), xytext=(0, 7),
-                       textcoords="offset points", ha="right", color=color,
+                       (x.max(), y[np.argmax(x)]), xytext=(7, 0),
+                       textcoords="offset points", va="center", color=color,
                        fontsize=8)
         return None
     return (y[np.argmax(x)], f"{solver}  {growth(x, y)}", color)
