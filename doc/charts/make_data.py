@@ -129,6 +129,20 @@ class Measurements:
                  f"--history={unfinished['convergence']}",
                  f"--seconds={runs.patience(self.options.quick)}",
                  *what.overrides], self.runs / f"solvers-{what.name}.log")
+            if what.larger:
+                say(f"those that fit: {what.name}, one more mesh")
+                larger = self.data / f"larger-{what.name}.part"
+                run([self.options.solvers, what.dim,
+                     self.scene(what.dim, what.scene), f"--table={larger}",
+                     f"--solvers={','.join(runs.WITHOUT_FACTORS)}",
+                     *what.larger], self.runs / f"larger-{what.name}.log")
+                header, *rows = larger.read_text().splitlines(keepends=True)
+                with open(unfinished["scaling"], "r+") as file:
+                    if file.readline() != header:
+                        raise DataError(f"{larger}: other columns.")
+                    file.seek(0, 2)
+                    file.writelines(rows)
+                larger.unlink()
             for kind, file in files.items():
                 unfinished[kind].replace(file)
 

@@ -90,7 +90,9 @@ def draw_solver(panel, table, values, solved, solver, failures):
         panel.annotate(f"{solver}  {growth(x, y)}",
                        (x.max(), y[np.argmax(x)]), xytext=(7, 0),
                        textcoords="offset points", va="center", color=color,
-                       fontsize=8)
+                       fontsize=8, zorder=6,
+                       bbox={"facecolor": "white", "edgecolor": "none",
+                             "alpha": 0.85, "pad": 0.8})
         return None
     return (y[np.argmax(x)], f"{solver}  {growth(x, y)}", color)
 
