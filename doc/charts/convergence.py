@@ -126,5 +126,5 @@ def draw(data, output, name, subject):
                   transform=axes.transAxes, fontsize=7, va="top", color="0.35")
     dofs = f"{int(table.remark('dofs')):,}".replace(",", " ")
     axes_below(figure, headline(figure, message(arrivals, goal_name),
-                                f"{subject} {dofs} degrees of freedom."), 0.08)
+                                f"{subject} N = {dofs}."), 0.08)
     save(figure, output, f"convergence-{name}.svg")

@@ -31,7 +31,8 @@ def draw(part, data, output, quick):
     elif part == "solvers":
         for what in runs.solvers(quick):
             convergence.draw(data, output, what.name, what.subject)
-            scaling.draw(data, output, what.name, what.subject)
+            scaling.draw(data, output, what.name, what.subject,
+                         runs.patience(quick))
     elif part == "stability":
         for path in sorted(data.glob("stability-*.csv")):
             stability.draw(path, output)

@@ -17,6 +17,7 @@ import time
 from pathlib import Path
 
 import h5py
+import numpy as np
 
 import runs
 from chart import DataError, Table
@@ -74,6 +75,33 @@ class Measurements:
                 half_widths = (f"{table.remark('contact_half_width'):.12g},"
                                f"{table.remark('stick_half_width'):.12g}")
 
+        if self.options.quick:
+            self.check_reference()
+
+    def check_reference(self):
+        """Where the exact solution is known, the errors against a reference have
+        to fit those against the exact one: nearly orthogonal, the error of a level
+        is what it lacks to the reference and the error of the latter."""
+        say("errors against a reference and against the exact solution")
+        coarse, finer = 2, 2
+        errors = {}
+        for name, overrides in (
+                ("exact", [f"Refinement/Levels={coarse + finer}"]),
+                ("reference", [f"Refinement/Levels={coarse}",
+                               f"--reference=uniform:{finer}",
+                               "Scene/Exact displacement="])):
+            table = self.runs / f"check-{name}.csv"
+            run([self.options.precision, 2, self.scene(2, "manufactured"),
+                 f"--table={table}", "--half-widths=1,0.5", *runs.UNIFORM,
+                 "Refinement/Initial refinements=1", *overrides],
+                self.runs / f"check-{name}.log")
+            errors[name] = Table(table, ("energy_error",))["energy_error"]
+        exact = errors["exact"][:coarse + 1]
+        sums = np.hypot(errors["reference"], errors["exact"][-1])
+        if not np.allclose(sums, exact, rtol=1e-3):
+            raise DataError("Errors against a reference do not fit those against "
+                            f"the exact solution: {sums} and {exact}.")
+
     def cycles(self):
         for what in runs.cycles(self.options.quick):
             rows = []
@@ -127,8 +155,22 @@ class Measurements:
                  self.scene(what.dim, what.scene), "--every-level",
                  f"--table={unfinished['scaling']}",
                  f"--history={unfinished['convergence']}",
-                 f"--seconds={2 if self.options.quick else runs.PATIENCE}",
+                 f"--seconds={runs.patience(self.options.quick)}",
                  *what.overrides], self.runs / f"solvers-{what.name}.log")
+            if what.larger:
+                say(f"those that fit: {what.name}, one more mesh")
+                larger = self.data / f"larger-{what.name}.part"
+                run([self.options.solvers, what.dim,
+                     self.scene(what.dim, what.scene), f"--table={larger}",
+                     f"--solvers={','.join(runs.WITHOUT_FACTORS)}",
+                     *what.larger], self.runs / f"larger-{what.name}.log")
+                header, *rows = larger.read_text().splitlines(keepends=True)
+                with open(unfinished["scaling"], "r+") as file:
+                    if file.readline() != header:
+                        raise DataError(f"{larger}: other columns.")
+                    file.seek(0, 2)
+                    file.writelines(rows)
+                larger.unlink()
             for kind, file in files.items():
                 unfinished[kind].replace(file)
 

@@ -105,9 +105,18 @@ class Solvers:
     """Charts 2 and 3: all solvers on all levels of a scene, with their histories
     on the last one."""
 
-    def __init__(self, name, dim, scene, subject, overrides):
+    def __init__(self, name, dim, scene, subject, overrides, larger=None):
+        """`larger` are the overrides for one more mesh, for those solvers that
+        fit into the memory there."""
         self.name, self.dim, self.scene = name, dim, scene
         self.subject, self.overrides = subject, overrides
+        self.larger = larger
+
+
+# All but those that factorise, and one that would be stopped in any case.
+WITHOUT_FACTORS = ("algorithm 3", "algorithm 3 W", "algorithm 3 monotone",
+                   "algorithm 3 monotone W", "algorithm 2", "newton gmres",
+                   "linear multigrid", "linear cg+ml")
 
 
 def levels(initial, number):
@@ -115,8 +124,9 @@ def levels(initial, number):
             f"Refinement/Levels={number}", "Refinement/Maximum dofs=100000000"]
 
 
-# After this many seconds on a level an opponent that does not arrive is stopped.
-PATIENCE = 10
+def patience(quick):
+    """After this many seconds on a level Gauss-Seidel is stopped."""
+    return 2 if quick else 10
 
 
 def solvers(quick):
@@ -134,7 +144,8 @@ def solvers(quick):
         Solvers("block-3d", 3, "block",
                 "Scene block (3D): cube, uniform meshes, F = 0.4, Poisson ratio "
                 "0.3.",
-                UNIFORM + (levels(1, 1) if quick else levels(2, 3))),
+                UNIFORM + (levels(1, 1) if quick else levels(3, 2)),
+                larger=UNIFORM + (levels(1, 2) if quick else levels(3, 3))),
         Solvers("cylinder", 3, "cylinder",
                 "Scene cylinder (3D): on two rods, adaptive meshes, F = 0.4, "
                 "Poisson ratio 0.325.",
