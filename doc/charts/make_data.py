@@ -131,6 +131,7 @@ class Measurements:
                       f"Contact/Friction coefficient={friction}",
                       f"Solver/Coarse correction={correction}",
                       f"Solver/Truncation={truncation}",
+                      "Solver/Safeguards=false",
                       f"Solver/Maximum cycles={runs.MOST_CYCLES}"],
                      self.runs / f"{directory.name}.log", allowed=(0, 1))
         with h5py.File(history) as file:
