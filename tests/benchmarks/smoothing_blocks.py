@@ -122,6 +122,7 @@ def contraction(level, n_sweeps, n_cycles=14):
 
 
 def main():
+    print("\nblocks to relax: square of 32 by 32 cells, mean volumetric strains")
     print("    nu  blocks              sweeps  rows per node   alone"
           "   conjugate gradients")
     n = 32
