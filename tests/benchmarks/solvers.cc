@@ -14,6 +14,9 @@
 //            the last level, against seconds since the start, set-up included.
 //            The reference is a solution by the product at a tolerance of
 //            1e-13; that of a linear solver, of its own linear problem.
+//            Iteration 0 is the initial guess, at time 0. An iteration is a
+//            cycle, a step of "newton direct", an iteration of GMRES within a
+//            step of "newton gmres", or ten sweeps of Gauss-Seidel.
 // --seconds  after which Gauss-Seidel is stopped; 120 by default.
 
 #include <deal.II/base/timer.h>

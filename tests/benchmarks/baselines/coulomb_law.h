@@ -106,8 +106,8 @@ namespace Benchmark
   std::vector<double> contact_stiffness(const RotatedProblem<dim> &rotated,
                                         const std::vector<char>   &in_zone);
 
-  /** Sets the flags and normal forces of a state from phases and from forces
-   * f - A u at the contact nodes, dim values each, in frames. */
+  /** Sets the flags and normal forces of a state from the phases and the normal
+   * components of f - A u at the contact nodes. */
   template <int dim>
   void set_state(ContactState                          &state,
                  const std::vector<LinearizedLaw<dim>> &laws,

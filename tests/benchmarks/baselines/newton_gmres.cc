@@ -408,8 +408,13 @@ namespace Benchmark
         // safeguard, and no more accurately than is needed in the end. More
         // than a hundredth to begin with, as is often recommended, leaves so
         // much in the forces that phases are told wrongly: a third more
-        // iterations and twice the steps on the half disc.
-        const double largest = 0.01, gamma = 0.9;
+        // iterations and twice the steps on the half disc. With large
+        // coefficients of friction even that may be too much; steps that lead
+        // nowhere become exact ones.
+        const double gamma   = 0.9;
+        const double largest = report.iterations < 10 ? 1e-2
+          : report.iterations < 20                    ? 1e-4
+                                                      : 1e-7;
         double       forcing = largest;
         if (report.iterations > 0)
           {

@@ -54,7 +54,7 @@ namespace Benchmark
     NodeBlock<dim> block(const unsigned int row,
                          const std::size_t  position) const;
 
-    /** y = A x in frames; both may be the same vector only for @p x. */
+    /** y = A x in frames. */
     void vmult(VectorType &y, const VectorType &x) const;
 
     /** f - A u in frames, of a displacement @p u along the axes. */
