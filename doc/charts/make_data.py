@@ -42,6 +42,16 @@ def run(command, log, allowed=(0,)):
     return status
 
 
+def append(table, other):
+    """Adds the rows of another table with the same columns."""
+    header, *rows = other.read_text().splitlines(keepends=True)
+    with open(table, "r+") as file:
+        if file.readline() != header:
+            raise DataError(f"{other}: other columns.")
+        file.seek(0, 2)
+        file.writelines(rows)
+
+
 class Measurements:
     def __init__(self, options):
         self.options = options
@@ -148,32 +158,29 @@ class Measurements:
             raise DataError("--solvers=PROGRAM is missing.")
         for what in runs.solvers(self.options.quick):
             say(f"all solvers: {what.name}")
-            files = {kind: self.data / f"{kind}-{what.name}.csv"
-                     for kind in ("scaling", "convergence")}
-            unfinished = {kind: file.with_suffix(".part")
-                          for kind, file in files.items()}
-            run([self.options.solvers, what.dim,
-                 self.scene(what.dim, what.scene), "--every-level",
-                 f"--table={unfinished['scaling']}",
-                 f"--history={unfinished['convergence']}",
-                 f"--seconds={runs.patience(self.options.quick)}",
-                 *what.overrides], self.runs / f"solvers-{what.name}.log")
+            table = self.data / f"scaling-{what.name}.part"
+            history = self.data / f"convergence-{what.name}.part"
+            of_first = [] if what.history_of_larger else [f"--history={history}"]
+            self.compare(what, f"solvers-{what.name}",
+                         ["--every-level", f"--table={table}", *of_first,
+                          *what.overrides])
             if what.larger:
-                say(f"those that fit: {what.name}, one more mesh")
-                larger = self.data / f"larger-{what.name}.part"
-                run([self.options.solvers, what.dim,
-                     self.scene(what.dim, what.scene), f"--table={larger}",
-                     f"--solvers={','.join(runs.WITHOUT_FACTORS)}",
-                     *what.larger], self.runs / f"larger-{what.name}.log")
-                header, *rows = larger.read_text().splitlines(keepends=True)
-                with open(unfinished["scaling"], "r+") as file:
-                    if file.readline() != header:
-                        raise DataError(f"{larger}: other columns.")
-                    file.seek(0, 2)
-                    file.writelines(rows)
-                larger.unlink()
-            for kind, file in files.items():
-                unfinished[kind].replace(file)
+                say(f"those that get so far: {what.name}, one more mesh")
+                last = self.runs / f"larger-{what.name}.csv"
+                of_last = ([f"--history={history}"] if what.history_of_larger
+                           else [])
+                self.compare(what, f"larger-{what.name}",
+                             [f"--table={last}", *of_last,
+                              f"--solvers={','.join(runs.WITHOUT_FACTORS)}",
+                              *what.larger])
+                append(table, last)
+            for file in (table, history):
+                file.replace(file.with_suffix(".csv"))
+
+    def compare(self, what, name, arguments):
+        run([self.options.solvers, what.dim, self.scene(what.dim, what.scene),
+             f"--seconds={runs.patience(self.options.quick)}", *arguments],
+            self.runs / f"{name}.log")
 
     def write(self, name, header, rows):
         part = (self.data / name).with_suffix(".part")
