@@ -13,7 +13,7 @@ trap 'rm -rf "$directory"' EXIT
 
 # Of the last row of the run's table.
 run() {
-  "$@" Output/Fields=false Output/Verbosity=levels Refinement/Estimate\ error=false \
+  "$@" Solver/Safeguards=false Output/Fields=false Output/Verbosity=levels Refinement/Estimate\ error=false \
     "Output/Directory=$directory" 'Solver/Maximum cycles=200' |
     awk '$1 ~ /^[0-9]+$/ && NF >= 10 {cycles = $7; rate = $8; seconds = $10}
          /^No convergence/ {failed = 1}

@@ -182,14 +182,13 @@ namespace
   test_failure()
   {
     std::cout << "Failure" << std::endl;
-    Parameters p            = block_parameters<2>(FrictionLaw::coulomb, .4);
-    p.solver.maximum_cycles = 2;
+    Parameters p = block_parameters<2>(FrictionLaw::coulomb, .4);
+    p.solver.certificate_tolerance   = 1e-30;
     p.refinement.initial_refinements = 3;
     VectorType         u;
     ContactState       state(0, false);
     const SolverReport report = solve(p, u, state);
     check(!report.converged, "it is not solved");
-    std::cout << report.certificate.describe() << " conv " << report.converged << " " << report.cycles.size() << std::endl;
     for (const SolverAttempt &attempt : report.attempts)
       std::cout << attempt.name << std::endl;
     check_below(report.certificate.largest(), 1e-8, "almost it is");
