@@ -5,7 +5,7 @@
         --solvers=PROGRAM --scenes2d=FOLDER --scenes3d=FOLDER --runs=FOLDER
         --data=FOLDER [--quick] [--only=PART,...]
 
-The parts are precision, cycles and solvers. What is measured, and on which
+The parts are precision, cycles, solvers and stopping. What is measured, and on which
 meshes, stands in runs.py. Nothing is written of a
 run that did not end well; then this program does not, either."""
 
@@ -153,6 +153,23 @@ class Measurements:
                  int(not (status == 1 and i == last))]
                 for i in range(last + 1)]
 
+    def stopping(self):
+        columns = ("level", "dofs", "cycles", "solve_seconds", "energy",
+                   "contact_nodes", "sticky_nodes")
+        rows = []
+        for dim, scene, overrides in runs.stopping(self.options.quick):
+            for tolerance in ("1e-9", "discretisation"):
+                say(f"when to stop: {scene}, {tolerance}")
+                directory = self.runs / f"stopping-{scene}-{tolerance}"
+                run([self.programs[dim], self.scene(dim, scene), *overrides,
+                     f"Output/Directory={directory}", "Output/Fields=false",
+                     f"Solver/Inner tolerance={tolerance}"],
+                    self.runs / f"{directory.name}.log")
+                with h5py.File(directory / "history.h5") as file:
+                    levels = [file["levels"][name][:] for name in columns]
+                rows += [[scene, tolerance, *values] for values in zip(*levels)]
+        self.write("stopping.csv", ["scene", "tolerance", *columns], rows)
+
     def solvers(self):
         if not self.options.solvers:
             raise DataError("--solvers=PROGRAM is missing.")
@@ -202,7 +219,8 @@ def main():
     options = parser.parse_args()
     measurements = Measurements(options)
     parts = {"precision": measurements.precision,
-             "cycles": measurements.cycles, "solvers": measurements.solvers}
+             "cycles": measurements.cycles, "solvers": measurements.solvers,
+             "stopping": measurements.stopping}
     try:
         for part in options.only.split(","):
             if part in parts:

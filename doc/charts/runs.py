@@ -9,7 +9,7 @@ the subject that is written below its title, the scene, and the sizes.
 
 # All parts that can be asked for, and those of them for which nothing is measured
 # here.
-PARTS = ("precision", "cycles", "solvers", "stability", "bounds")
+PARTS = ("precision", "cycles", "solvers", "stopping", "stability", "bounds")
 DRAWN_ONLY = ("stability", "bounds")
 
 UNIFORM = ["Refinement/Strategy=uniform"]
@@ -156,3 +156,14 @@ def solvers(quick):
                 adaptive + dofs(100 if quick else 50000),
                 larger=adaptive + dofs(400 if quick else 100000),
                 history_of_larger=True)]
+
+
+STOPPING_SUBJECT = ("Cycles per level of the scenes hertz (2D) and cylinder (3D), "
+                    "adaptive, F = 0.4. The first level has no error to stop at.")
+
+
+def stopping(quick):
+    """Rows (dimension, scene, overrides)."""
+    return [(2, "hertz", dofs(400 if quick else 65000)),
+            (3, "cylinder", dofs(400 if quick else 60000) +
+             [f"Refinement/Initial refinements={0 if quick else 2}"])]
