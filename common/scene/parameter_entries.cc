@@ -408,7 +408,7 @@ namespace Friction
        flag,
        "Whether to give up an iteration that is getting nowhere, and to try "
        "others: shorter steps, algebraic corrections, Algorithm 2 with mixed "
-       "normal forces, less friction first."},
+       "normal forces, or with small steps of them, less friction first."},
 
       {"Output",
        "Directory",

@@ -8,24 +8,19 @@
 
 namespace Friction
 {
-  namespace
+  template <int dim>
+  double
+  force_of_rounding(const DiscreteProblem<dim> &problem, const VectorType &u)
   {
-    // The largest force that the displacement of a single node would cause,
-    // reduced to what is left of it where rounding errors are all there is.
-    template <int dim>
-    double
-    force_of_rounding(const DiscreteProblem<dim> &problem, const VectorType &u)
-    {
-      double largest = 0;
-      for (unsigned int i = 0; i < problem.matrix.n_rows(); ++i)
-        if (problem.matrix.row_begin(i) < problem.matrix.row_end(i))
-          largest = std::max(
-            largest,
-            trace<dim>(problem.matrix.block(problem.matrix.row_begin(i))) *
-              std::sqrt(dot<dim>(u.begin() + dim * i, u.begin() + dim * i)));
-      return 1e-8 * max_over_processes(largest, problem.communicator());
-    }
-  } // namespace
+    double largest = 0;
+    for (unsigned int i = 0; i < problem.matrix.n_rows(); ++i)
+      if (problem.matrix.row_begin(i) < problem.matrix.row_end(i))
+        largest = std::max(
+          largest,
+          trace<dim>(problem.matrix.block(problem.matrix.row_begin(i))) *
+            std::sqrt(dot<dim>(u.begin() + dim * i, u.begin() + dim * i)));
+    return 1e-8 * max_over_processes(largest, problem.communicator());
+  }
 
 
 
@@ -168,6 +163,11 @@ namespace Friction
   }
 
 
+
+  template double force_of_rounding(const DiscreteProblem<2> &,
+                                    const VectorType &);
+  template double force_of_rounding(const DiscreteProblem<3> &,
+                                    const VectorType &);
 
   template class CoulombSolver<2>;
   template class CoulombSolver<3>;

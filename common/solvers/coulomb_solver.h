@@ -79,6 +79,17 @@ namespace Friction
 
 
   /**
+   * The largest force that the displacement of a single node would cause,
+   * reduced to what is left of it where rounding errors are all there is.
+   * Smaller forces certify nothing; see make_certificate().
+   */
+  template <int dim>
+  double force_of_rounding(const DiscreteProblem<dim> &problem,
+                           const VectorType           &u);
+
+
+
+  /**
    * Solves the discrete contact problem with the law of friction it has.
    *
    * Without friction, and with given friction bounds (Tresca), the monotone

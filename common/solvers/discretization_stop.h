@@ -8,6 +8,8 @@
 
 namespace Friction
 {
+  using namespace dealii;
+
   /**
    * Says when a solution is as good as its mesh: when the error of the
    * iteration is a tenth of that of the discretisation, so that going on would

@@ -147,6 +147,13 @@ namespace Friction
         problem.effective_coefficient(), iterate, all, progress);
     if (!report.converged && coulomb)
       {
+        Iterate careful = initial;
+        report          = careful_algorithm_2(careful, all, progress);
+        if (report.converged)
+          iterate = careful;
+      }
+    if (!report.converged && coulomb)
+      {
         Iterate continued = initial;
         report            = continuation(continued, all, progress);
         if (report.converged)
@@ -201,6 +208,50 @@ namespace Friction
         report = attempt(
           name + ", algebraic corrections", solver, iterate, all, progress);
       }
+    return report;
+  }
+
+
+
+  // What mixing extrapolates from are changes of phases as well, and where there
+  // is very much friction nothing good comes of that. Fixed small steps that do
+  // without get close to the solution, slowly; where the phases are those of the
+  // solution, or nearly so, mixing does the rest. All of it is one attempt.
+  template <int dim>
+  SolverReport
+  SafeguardedSolver<dim>::careful_algorithm_2(Iterate        &iterate,
+                                              SolverReport   &all,
+                                              const Progress &progress) const
+  {
+    SolverSettings careful           = settings;
+    careful.algorithm                = Algorithm::fixed_point;
+    careful.coarse_correction        = CoarseCorrection::truncated;
+    careful.truncation               = TruncationVariant::phases;
+    careful.outer_damping            = .02;
+    careful.mixed_outer_iterations   = 0;
+    careful.maximum_outer_iterations = 1000;
+    // CoulombSolver divides this by the coefficient.
+    careful.outer_tolerance =
+      .01 * std::max(1., problem.effective_coefficient());
+    const std::string name = "Algorithm 2 with small steps of the normal forces";
+    SolverReport      report, steps;
+    {
+      CoulombSolver<dim> solver(hierarchy, problem, careful);
+      report = attempt(name, solver, iterate, steps, progress);
+    }
+    if (report.inner_converged)
+      {
+        careful.outer_tolerance        = settings.outer_tolerance;
+        careful.mixed_outer_iterations = 10;
+        CoulombSolver<dim> solver(hierarchy, problem, careful);
+        report = attempt(name, solver, iterate, steps, progress);
+      }
+    all.attempts.push_back({name,
+                            static_cast<unsigned int>(steps.cycles.size()),
+                            report.converged,
+                            report.certificate.largest()});
+    all.cycles.insert(
+      all.cycles.end(), steps.cycles.begin(), steps.cycles.end());
     return report;
   }
 

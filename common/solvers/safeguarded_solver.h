@@ -19,12 +19,15 @@ namespace Friction
    *    mixing, see MixedFixedPoint: if Coulomb's law was the trouble, because
    *    there is much friction. Each of its problems, with given normal forces,
    *    is convex, which makes it slow and reliable;
-   * 4. continuation: first the problem with less friction, and its solution as
+   * 4. Algorithm 2 with a fiftieth of each change, and without mixing until the
+   *    normal forces have nearly settled: with so much friction that each change
+   *    of them changes phases, too;
+   * 5. continuation: first the problem with less friction, and its solution as
    *    initial guess for more, until all friction is there.
    *
-   * Without friction, or with Tresca's, the problem is convex, and the last two
-   * are left out. Each attempt starts where the one before has ended, except
-   * for the last one, which starts from the initial guess.
+   * Without friction, or with Tresca's, the problem is convex, and the last
+   * three are left out. Each attempt starts where the one before has ended,
+   * except for the last two, which start from the initial guess.
    *
    * The discrete problem has a solution whatever the coefficient of friction
    * (the map of normal forces to those of the solution with these forces given
@@ -73,6 +76,10 @@ namespace Friction
                                    Iterate        &iterate,
                                    SolverReport   &all,
                                    const Progress &progress) const;
+
+    SolverReport careful_algorithm_2(Iterate        &iterate,
+                                     SolverReport   &all,
+                                     const Progress &progress) const;
 
     SolverReport continuation(Iterate        &iterate,
                               SolverReport   &all,

@@ -5,7 +5,8 @@
         --solvers=PROGRAM --scenes2d=FOLDER --scenes3d=FOLDER --runs=FOLDER
         --data=FOLDER [--quick] [--only=PART,...]
 
-The parts are precision, cycles, solvers and stopping. What is measured, and on which
+The parts are precision, cycles, solvers, stopping and stability. What is measured,
+and on which
 meshes, stands in runs.py. Nothing is written of a
 run that did not end well; then this program does not, either."""
 
@@ -21,6 +22,7 @@ import numpy as np
 
 import runs
 from chart import DataError, Table
+from stability import COLUMNS
 
 BEGIN = time.monotonic()
 
@@ -50,6 +52,50 @@ def append(table, other):
             raise DataError(f"{other}: other columns.")
         file.seek(0, 2)
         file.writelines(rows)
+
+
+def run_for(command, log):
+    """Runs a program that is stopped when it takes far too long: what it has
+    written till then counts."""
+    log.parent.mkdir(parents=True, exist_ok=True)
+    with open(log, "w") as file:
+        try:
+            subprocess.run([str(word) for word in command], stdout=file,
+                           stderr=subprocess.STDOUT,
+                           timeout=runs.LIMIT * runs.LIMIT_OF_CASE, check=True)
+        except subprocess.TimeoutExpired:
+            file.write("stopped\n")
+        except subprocess.CalledProcessError as error:
+            file.flush()
+            tail = "\n".join(log.read_text().splitlines()[-5:])
+            raise DataError(f"{' '.join(map(str, command))}\nended with status "
+                            f"{error.returncode}; the last lines of {log}:\n"
+                            f"{tail}") from error
+
+
+def judge(solver, row):
+    """Status, iterations and note of a field of a map."""
+    if row is None:
+        return ["red", "", "did not come to an end"]
+    iterations = int(row["iterations"])
+    if row["converged"] != "1":
+        # How far it came in a given time says more of the machine.
+        if row["failure"] or solver == "gauss-seidel":
+            return ["red", "", row["failure"] or "stopped after "
+                    f"{runs.LIMIT_OF_RELAXATION} seconds"]
+        return ["red", iterations,
+                f"certificate {float(row['certificate']):.0e} after "
+                f"{iterations} iterations"]
+    if (solver == "gauss-seidel" and
+            float(row["solve_seconds"]) >= runs.LIMIT_OF_RELAXATION):
+        return ["amber", "", "stopped after "
+                f"{runs.LIMIT_OF_RELAXATION} seconds, and solved"]
+    if int(row["attempts"]) > 1:
+        return ["amber", iterations,
+                f"attempt {row['attempts']}: {row['attempt']}"]
+    good = (runs.GOOD_STEPS if solver.startswith("newton") else
+            runs.GOOD_CYCLES)
+    return ["green" if iterations <= good else "amber", iterations, ""]
 
 
 class Measurements:
@@ -199,6 +245,55 @@ class Measurements:
              f"--seconds={runs.patience(self.options.quick)}", *arguments],
             self.runs / f"{name}.log")
 
+    def stability(self):
+        if not self.options.solvers:
+            raise DataError("--solvers=PROGRAM is missing.")
+        maps = runs.stability(self.options.quick)
+        if self.options.maps:
+            maps = [what for what in maps
+                    if what.name in self.options.maps.split(",")]
+        for what in maps:
+            say(f"stability: {what.name}")
+            rows = []
+            for case in what.cases:
+                results = self.results_of(what, case)
+                for solver in what.solvers:
+                    for size in case.sizes:
+                        rows.append([what.subject, what.problem_axis,
+                                     case.problem, what.size_axis, size, solver,
+                                     *judge(solver, results.get((solver, size)))])
+            self.write(f"stability-{what.name}.csv", COLUMNS, rows)
+
+    def results_of(self, what, case):
+        """What the solvers have achieved, by solver and size."""
+        name = f"stability-{what.name}-{case.problem}".replace(" ", "-")
+        command = [self.options.solvers, case.dim,
+                   self.scene(case.dim, case.scene),
+                   f"--solvers={','.join(what.solvers)}",
+                   f"--limit={runs.LIMIT}",
+                   f"--seconds={runs.LIMIT_OF_RELAXATION}",
+                   *case.options, *case.overrides]
+        given = any(option.startswith("--guess=") for option in case.options)
+        results = {}
+        for size, way in case.sizes.items():
+            log = self.runs / (f"{name}-{size}.log" if given else f"{name}.log")
+            table = log.with_suffix(".csv")
+            if given:
+                run_for(command + way + [f"--table={table}"], log)
+            elif not results:
+                wanted = ",".join(map(str, case.sizes.values()))
+                run_for(command + [f"--levels={wanted}", f"--table={table}"],
+                        log)
+            else:
+                break
+            with open(table, newline="") as file:
+                for row in csv.DictReader(file):
+                    key = size if given else next(
+                        key for key, level in case.sizes.items()
+                        if level == int(row["level"]))
+                    results[row["solver"], key] = row
+        return results
+
     def write(self, name, header, rows):
         part = (self.data / name).with_suffix(".part")
         with open(part, "w", newline="") as file:
@@ -215,12 +310,15 @@ def main():
         parser.add_argument(f"--{name}", required=True)
     parser.add_argument("--solvers")
     parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--maps", help="names of stability maps, the others are "
+                        "left as they are")
     parser.add_argument("--only", default=",".join(runs.PARTS))
     options = parser.parse_args()
     measurements = Measurements(options)
     parts = {"precision": measurements.precision,
              "cycles": measurements.cycles, "solvers": measurements.solvers,
-             "stopping": measurements.stopping}
+             "stopping": measurements.stopping,
+             "stability": measurements.stability}
     try:
         for part in options.only.split(","):
             if part in parts:

@@ -7,10 +7,9 @@ the subject that is written below its title, the scene, and the sizes.
 """
 
 
-# All parts that can be asked for, and those of them for which nothing is measured
-# here.
+# All parts that can be asked for, and those of them for which nothing is measured.
 PARTS = ("precision", "cycles", "solvers", "stopping", "stability", "bounds")
-DRAWN_ONLY = ("stability", "bounds")
+DRAWN_ONLY = ("bounds",)
 
 UNIFORM = ["Refinement/Strategy=uniform"]
 
@@ -167,3 +166,174 @@ def stopping(quick):
     return [(2, "hertz", dofs(400 if quick else 65000)),
             (3, "cylinder", dofs(400 if quick else 60000) +
              [f"Refinement/Initial refinements={0 if quick else 2}"])]
+
+
+class Case:
+    """A row of a map of chart 5. `sizes` says for each size by its name what
+    leads there: a level of one nested iteration, or, if the guess is given,
+    overrides for the first mesh."""
+
+    def __init__(self, problem, dim, scene, overrides, sizes, options=()):
+        self.problem, self.dim, self.scene = problem, dim, scene
+        self.overrides, self.sizes = list(overrides), sizes
+        self.options = list(options)
+
+
+class Map:
+    """Chart 5: one map."""
+
+    def __init__(self, name, subject, problem_axis, size_axis, cases,
+                 solvers=None):
+        self.name, self.subject = name, subject
+        self.problem_axis, self.size_axis = problem_axis, size_axis
+        self.cases, self.solvers = cases, solvers or MAPPED
+
+
+# The first one is what a user gets; the others that are the product are variants
+# without safeguards.
+MAPPED = ("default", "algorithm 3", "algorithm 2", "algorithm 3 monotone",
+          "newton direct", "newton gmres")
+
+# A solver is well if it needs at most so many cycles, or steps of Newton's
+# method, and it has failed after so many seconds on one mesh (and all of a case
+# after so many times that). Gauss-Seidel, which has no notion of failure, is
+# stopped earlier.
+GOOD_CYCLES, GOOD_STEPS = 30, 20
+LIMIT, LIMIT_OF_CASE = 60, 10
+LIMIT_OF_RELAXATION = 2
+
+
+def refined(initial, *meshes):
+    """Uniform meshes by their number of refinements, and how to get there."""
+    last = meshes[-1] - initial
+    return (UNIFORM + levels(initial, last),
+            {str(mesh): mesh - initial for mesh in meshes})
+
+
+def adapted(initial, *wanted):
+    return (["Refinement/Strategy=adaptive"] + levels(initial, wanted[-1]),
+            {str(level): level for level in wanted})
+
+
+def friction_map(scene, dim, subject, frictions, size_axis, meshes):
+    overrides, sizes = meshes
+    return Map(f"friction-{scene}", f"coefficient of friction, {subject}",
+               "friction", size_axis,
+               [Case(friction, dim, scene, overrides +
+                     [f"Contact/Friction coefficient={friction}"], sizes)
+                for friction in frictions])
+
+
+def poisson_map():
+    overrides, sizes = refined(3, 4, 5, 6)
+    return Map("poisson",
+               "nearly incompressible, scene block (2D), F = 0.4",
+               "Poisson ratio", "refinements",
+               [Case(f"{ratio} {strain}", 2, "block", overrides +
+                     [f"Material/Poisson ratio={ratio}",
+                      f"Material/Volumetric strain={strain}"], sizes)
+                for strain in ("pointwise", "mean")
+                for ratio in ("0.3", "0.45", "0.49", "0.499", "0.4999")])
+
+
+def aspect_map():
+    cases = []
+    for where in ("across", "along"):
+        for ratio, first, n in ((1, 3, 3), (10, 1, 3), (100, 0, 3),
+                                (1000, 0, 2)):
+            cells = f"{ratio},1" if where == "across" else f"1,{ratio}"
+            cases.append(Case(
+                f"{ratio} {where}", 2, "block",
+                UNIFORM + levels(first, n - 1) + [f"Scene/Subdivisions={cells}"],
+                dict(zip(("coarse", "medium", "fine"), range(n)))))
+    return Map("aspect",
+               "cells longer across or along the contact boundary, scene block "
+               "(2D), F = 0.4", "aspect ratio", "mesh", cases)
+
+
+def inclusion_map():
+    overrides, sizes = refined(2, 3, 4, 5)
+    return Map("inclusion",
+               "a stiffer or softer part at the contact boundary, scene block "
+               "(2D), F = 0.4; the programs' scenes have no such part, this is "
+               "one of the comparison only",
+               "Young's modulus times", "refinements",
+               [Case(factor, 2, "block", overrides, sizes,
+                     [f"--inclusion={factor}"])
+                for factor in ("1e-6", "1e-4", "1e-2", "1", "1e2", "1e4",
+                               "1e6")])
+
+
+def touching_map(name, dim, scene, subject, top, meshes, common=()):
+    overrides, sizes = meshes
+    return Map(f"touching-{name}", subject, "pressed by", "level",
+               [Case("lifted" if depth == "-1e-3" else depth, dim, scene,
+                     overrides + list(common) +
+                     [f"Boundary conditions/Displacement={top}{-float(depth)}"],
+                     sizes)
+                for depth in ("1e-3", "1e-4", "1e-5", "1e-6", "1e-7", "1e-9",
+                              "-1e-3")],
+               MAPPED + ("gauss-seidel",))
+
+
+def guess_map():
+    scenes = ((2, "block", "block 2D", {"coarse": 3, "fine": 5}, UNIFORM),
+              (3, "block", "block 3D", {"coarse": 1, "fine": 3}, UNIFORM),
+              (2, "hertz", "hertz", {"coarse": 2, "fine": 4}, UNIFORM))
+    return Map("guesses",
+               "bad and infeasible initial guesses, made admissible; no nested "
+               "iteration, F = 0.4", "initial guess", "mesh",
+               [Case(f"{label}, {guess}", dim, scene, overrides,
+                     {size: [f"Refinement/Initial refinements={n}"]
+                      for size, n in sizes.items()}, [f"--guess={guess}"])
+                for dim, scene, label, sizes, overrides in scenes
+                for guess in ("zero", "random", "inside", "lifted")],
+               MAPPED + ("gauss-seidel",))
+
+
+def stick_limit_map(dim):
+    # Interpolated from the level before the solution would be exact.
+    sizes = {str(n): [f"Refinement/Initial refinements={n}"]
+             for n in ((2, 3, 4) if dim == 2 else (1, 2))}
+    rest = "L = 2" if dim == 2 else "L = 1.5; W = 1; alpha = pi/6"
+    threshold = 0.028
+    cases = []
+    for sign, name in ((1, "+"), (-1, "-")):
+        for amplitude in ("1e-1", "1e-2", "1e-4", "1e-6", "1e-8", "1e-10",
+                          "1e-12"):
+            U = threshold * (1 + sign * float(amplitude))
+            cases.append(Case(
+                name + amplitude, dim, "stick-slip", UNIFORM +
+                [f"Scene/Constants={rest}; H = 1; U = {U:.17g}; d = 0.02; "
+                 "gap = 0"], sizes, ["--guess=zero"]))
+    return Map(f"stick-limit-{dim}d",
+               f"slip at the stick limit, scene stick-slip ({dim}D): the top "
+               "moves by U*(1+a), where beyond U* all slips; initial guess "
+               "zero", "a",
+               "refinements", cases)
+
+
+FRICTIONS = ("1e-12", "1e-6", "0.05", "0.4", "1", "2", "5", "10", "100")
+
+
+def stability(quick):
+    if quick:
+        return [friction_map("raous", 2, "scene raous (2D)", ("0.4", "100"),
+                             "refinements", refined(2, 2, 3))]
+    return [
+        friction_map("raous", 2, "scene raous (2D)", FRICTIONS, "refinements",
+                     refined(3, 4, 5, 6)),
+        friction_map("hertz", 2, "scene hertz (2D)", FRICTIONS, "level",
+                     adapted(0, 3, 6, 9)),
+        friction_map("cylinder", 3, "scene cylinder (3D)", FRICTIONS, "level",
+                     adapted(0, 1, 3, 5)),
+        poisson_map(), aspect_map(), inclusion_map(),
+        touching_map("hertz", 2, "hertz",
+                     "few contact nodes or none, scene hertz (2D), F = 0.4",
+                     "1: 0, ", adapted(0, 0, 3, 6)),
+        touching_map("half-ball", 3, "half-ball",
+                     "few contact nodes or none, scene half-ball (3D) with F = "
+                     "0.4", "1: 0, 0, ", adapted(0, 0, 2, 4),
+                     ["Contact/Friction law=Coulomb",
+                      "Contact/Friction coefficient=0.4"]),
+        guess_map(), stick_limit_map(2), stick_limit_map(3)]

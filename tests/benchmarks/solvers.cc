@@ -2,11 +2,16 @@
 //
 // A nested iteration by the product leads to the last level, where each solver
 // starts from the same initial guess, interpolated from the level before and
-// made admissible. All are judged by the same certificate, evaluated by the
-// same function for all of them.
+// made admissible. It goes on from a level that is not solved, too, and says
+// so. All solvers are judged by the same certificate, evaluated by the same
+// function for all of them.
+//
+// The solver "default" is the product with its safeguards, as a user gets it;
+// the others that are the product are variants without them.
 //
 // Usage: benchmark-solvers 2|3 scene.prm [--solvers=NAME,NAME,...]
-//            [--table=FILE] [--history=FILE] [--every-level] [--seconds=S]
+//            [--table=FILE] [--history=FILE] [--every-level] [--levels=L,L,...]
+//            [--seconds=S] [--limit=S] [--guess=NAME] [--inclusion=FACTOR]
 //            [Section/Entry=value ...]
 //
 // --table    one line of comma separated values per solver (and level).
@@ -17,18 +22,32 @@
 //            Iteration 0 is the initial guess, at time 0. An iteration is a
 //            cycle, a step of "newton direct", an iteration of GMRES within a
 //            step of "newton gmres", or ten sweeps of Gauss-Seidel.
+// --solvers  all but "default" if not given.
 // --seconds  after which Gauss-Seidel is stopped; 120 by default.
+// --levels   those on which the solvers run, in place of the last one.
+// --limit    seconds after which any solver is stopped, and has failed.
+// --guess    interpolated (that of the nested iteration), or another one on the
+//            first mesh: zero, random, inside, lifted; see guesses.h.
+// --inclusion  multiplies Young's modulus in a part of the body: at the middle of
+//            its lower side, half as wide and a quarter as high as the body.
 
 #include <deal.II/base/timer.h>
 #include <deal.II/base/utilities.h>
 
+#include <deal.II/grid/grid_tools.h>
+
+#include <common/solvers/safeguarded_solver.h>
+
 #include <tests/benchmarks/baselines/contest.h>
+#include <tests/benchmarks/guesses.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <limits>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -38,10 +57,13 @@ namespace Benchmark
 {
   struct Options
   {
-    std::vector<std::string> solvers = solver_names();
-    std::string              table, history;
+    std::vector<std::string> solvers;
+    std::string              table, history, guess = "interpolated";
     bool                     every_level = false;
-    double                   seconds     = 120;
+    std::vector<int>         levels;
+    double                   seconds   = 120;
+    double                   limit     = std::numeric_limits<double>::max();
+    double                   inclusion = 1;
     std::vector<std::string> overrides;
   };
 
@@ -72,11 +94,26 @@ namespace Benchmark
         else if (!value(argument, "--seconds=").empty())
           options.seconds =
             Utilities::string_to_double(value(argument, "--seconds="));
+        else if (!value(argument, "--levels=").empty())
+          options.levels = Utilities::string_to_int(
+            Utilities::split_string_list(value(argument, "--levels="), ','));
+        else if (!value(argument, "--limit=").empty())
+          options.limit =
+            Utilities::string_to_double(value(argument, "--limit="));
+        else if (!value(argument, "--inclusion=").empty())
+          options.inclusion =
+            Utilities::string_to_double(value(argument, "--inclusion="));
+        else if (!value(argument, "--guess=").empty())
+          options.guess = value(argument, "--guess=");
         else if (argument.compare(0, 2, "--") == 0)
           throw InputError("There is no option '" + argument + "'.");
         else
           options.overrides.push_back(argument);
       }
+    if (options.solvers.empty())
+      for (const std::string &name : solver_names())
+        if (name != "default")
+          options.solvers.push_back(name);
     for (const std::string &name : options.solvers)
       if (std::find(solver_names().begin(), solver_names().end(), name) ==
           solver_names().end())
@@ -108,6 +145,82 @@ namespace Benchmark
 
 
 
+  // The stiffer or softer part of the body.
+  template <int dim>
+  std::function<double(const Point<dim> &)>
+  make_inclusion(const Parameters &parameters, const double factor)
+  {
+    if (factor == 1)
+      return {};
+    const auto mesh = make_triangulation<dim>();
+    Scene<dim>(parameters).make_coarse_mesh(*mesh);
+    const BoundingBox<dim> box = GridTools::compute_bounding_box(*mesh);
+    return [box, factor](const Point<dim> &point) {
+      const Point<dim> p      = box.real_to_unit(point);
+      bool             inside = p[dim - 1] < 0.25;
+      for (unsigned int d = 0; d + 1 < dim; ++d)
+        inside = inside && std::abs(p[d] - 0.5) < 0.25;
+      return inside ? factor : 1.;
+    };
+  }
+
+
+
+  // A level of the nested iteration. What a solver leaves behind is a guess for
+  // the next level, whether it is a solution or not.
+  template <int dim>
+  void
+  solve_level(NestedIteration<dim> &nest, const double limit)
+  {
+    const Discretization<dim>                &d       = *nest.discretization;
+    const auto                                problem = d.problem();
+    Timer                                     timer;
+    typename SafeguardedSolver<dim>::Progress progress = [&](const unsigned int,
+                                                             const double) {
+      if (timer.wall_time() > limit)
+        throw std::runtime_error("it took too long");
+    };
+    nest.state = nest.make_guess(nest.displacement);
+    try
+      {
+        SafeguardedSolver<dim> solver(
+          *d.hierarchy, problem, nest.parameters.solver);
+        nest.report = solver.solve(nest.displacement, nest.state, progress);
+        if (!nest.report.attempts.empty())
+          std::cerr << "  level " << nest.level << ": "
+                    << describe_attempts(nest.report) << std::endl;
+        if (!nest.report.converged)
+          std::cerr << "  level " << nest.level
+                    << " was not solved: " << nest.report.certificate.describe()
+                    << std::endl;
+      }
+    catch (const std::exception &error)
+      {
+        std::cerr << "  level " << nest.level
+                  << " was not solved: " << error.what() << std::endl;
+        nest.report.residual.reinit(nest.displacement);
+        problem.matrix.residual(nest.report.residual.begin(),
+                                problem.forces.begin(),
+                                nest.displacement.begin());
+      }
+    nest.accept();
+  }
+
+
+
+  // What a solver has said of its failure, as one field of a table.
+  std::string
+  in_quotes(std::string text)
+  {
+    text = text.substr(0, text.find('\n'));
+    for (char &c : text)
+      if (c == '"')
+        c = '\'';
+    return '"' + text + '"';
+  }
+
+
+
   // As NestedIteration::refine() will see it.
   template <int dim>
   bool
@@ -128,7 +241,8 @@ namespace Benchmark
     std::ofstream history = open_file(options.history);
     table << "scene,friction,poisson,level,dofs,contact,sticking,solver,"
              "converged,iterations,inner_iterations,setup_seconds,"
-             "solve_seconds,memory_bytes,certificate,energy"
+             "solve_seconds,memory_bytes,certificate,energy,attempts,attempt,"
+             "failure"
           << std::endl;
     std::printf("%-22s %5s %8s %8s %8s  %-4s %5s %6s %9s %9s %8s %9s %16s\n",
                 "solver",
@@ -145,19 +259,33 @@ namespace Benchmark
                 "certif.",
                 "energy");
 
-    NestedIteration<dim> nest(parameters);
-    bool                 more      = true;
-    double               n_coarser = 0;
+    NestedIteration<dim> nest(
+      parameters, make_inclusion<dim>(parameters, options.inclusion));
+    bool   more      = true;
+    double n_coarser = 0;
     while (more)
       {
         std::cerr << "level " << nest.level << ", "
                   << nest.discretization->dof_handler.n_dofs() << " dofs"
                   << std::endl;
-        nest.solve();
-        const bool last = is_last(nest);
-        if (last || options.every_level)
+        const bool given = (options.guess != "interpolated");
+        if (given)
           {
-            Contest<dim> contest(nest, n_coarser, options.seconds);
+            set_guess(nest, options.guess);
+            nest.state = nest.make_guess(nest.displacement);
+          }
+        else
+          solve_level(nest, options.limit);
+        const bool last   = given || is_last(nest);
+        const bool wanted = options.levels.empty()
+          ? last || options.every_level
+          : std::find(options.levels.begin(),
+                      options.levels.end(),
+                      nest.level) != options.levels.end();
+        if (wanted)
+          {
+            Contest<dim> contest(
+              nest, n_coarser, options.seconds, options.limit);
             if (last && !options.history.empty())
               {
                 std::cerr << "reference solution" << std::endl;
@@ -176,7 +304,9 @@ namespace Benchmark
                       << ',' << r.converged << ',' << r.iterations << ','
                       << r.inner_iterations << ',' << r.setup_seconds << ','
                       << r.solve_seconds << ',' << r.memory << ','
-                      << r.certificate << ',' << r.energy << std::endl;
+                      << r.certificate << ',' << r.energy << ',' << r.n_attempts
+                      << ",\"" << r.attempt << "\"," << in_quotes(r.failure)
+                      << std::endl;
                 std::printf("%-22s %5u %8u %8u %8u  %-4s %5u %6u %9.3f %9.3f "
                             "%8.1f %9.1e %16.9e\n",
                             name.c_str(),
@@ -197,7 +327,7 @@ namespace Benchmark
               }
           }
         n_coarser = nest.discretization->dof_handler.n_dofs();
-        more      = nest.refine();
+        more      = !given && nest.refine();
       }
   }
 } // namespace Benchmark
@@ -223,7 +353,9 @@ main(int argc, char *argv[])
         {
           std::cerr << "Usage: benchmark-solvers 2|3 scene.prm "
                        "[--solvers=NAME,...] [--table=FILE] [--history=FILE] "
-                       "[--every-level] [--seconds=S] "
+                       "[--every-level] [--levels=L,...] "
+                       "[--seconds=S] [--limit=S] "
+                       "[--guess=NAME] [--inclusion=FACTOR] "
                        "[Section/Entry=value ...]\n";
           return 2;
         }

@@ -28,6 +28,7 @@
 
 #include <deal.II/numerics/vector_tools.h>
 
+#include <functional>
 #include <memory>
 
 namespace Tests
@@ -59,7 +60,13 @@ namespace Tests
   class Discretization
   {
   public:
-    Discretization(const Scene<dim> &scene, const Triangulation<dim> &mesh)
+    /** By how many times the material is stiffer at a point than the scene
+     * says, the same in all of a cell: that of its middle. */
+    using Stiffening = std::function<double(const Point<dim> &)>;
+
+    Discretization(const Scene<dim>         &scene,
+                   const Triangulation<dim> &mesh,
+                   const Stiffening         &stiffening = {})
       : dof_handler(mesh)
       , mapping(1)
       , fe(FE_Q<dim>(1), dim)
@@ -102,7 +109,7 @@ namespace Tests
       make_stiffness_pattern(dof_handler, hanging, pattern);
       constraints = std::make_unique<NodalConstraints<dim>>(
         dof_handler, hanging, dirichlet, coupled_dofs(dof_handler, pattern));
-      assemble(scene);
+      assemble(scene, stiffening);
       contact = std::make_unique<ContactBoundary<dim>>(
         mapping,
         dof_handler,
@@ -161,7 +168,7 @@ namespace Tests
     DynamicSparsityPattern pattern;
 
     void
-    assemble(const Scene<dim> &scene)
+    assemble(const Scene<dim> &scene, const Stiffening &stiffening)
     {
       TrilinosWrappers::SparseMatrix stiffness;
       stiffness.reinit(dof_handler.locally_owned_dofs(),
@@ -187,14 +194,15 @@ namespace Tests
       Vector<double>                       cell_rhs(n_dofs), value(dim);
       Table<2, double>                     theta;
       std::vector<types::global_dof_index> indices(n_dofs);
-      const double                         lambda = scene.material().lambda();
-      const double                         mu     = scene.material().mu();
       for (const auto &cell : dof_handler.active_cell_iterators())
         if (cell->is_locally_owned())
           {
             cell_matrix = 0.;
             cell_rhs    = 0.;
             fe_values.reinit(cell);
+            const double factor = stiffening ? stiffening(cell->center()) : 1.;
+            const double lambda = factor * scene.material().lambda();
+            const double mu     = factor * scene.material().mu();
             shape_volumetric_strains(fe_values, scene.material(), theta);
             for (const unsigned int q : fe_values.quadrature_point_indices())
               {

@@ -27,9 +27,13 @@ namespace Tests
   class NestedIteration
   {
   public:
+    using Stiffening = typename Discretization<dim>::Stiffening;
+
     /** Makes the first mesh. The initial guess is zero. */
-    explicit NestedIteration(const Parameters &parameters)
+    explicit NestedIteration(const Parameters &parameters,
+                             const Stiffening &stiffening = {})
       : parameters(parameters)
+      , stiffening(stiffening)
       , scene(parameters)
       , mesh(make_triangulation<dim>())
     {
@@ -156,6 +160,7 @@ namespace Tests
     }
 
     const Parameters                                           parameters;
+    const Stiffening                                           stiffening;
     const Scene<dim>                                           scene;
     std::unique_ptr<parallel::distributed::Triangulation<dim>> mesh;
     std::unique_ptr<Discretization<dim>>                       discretization;
@@ -174,7 +179,8 @@ namespace Tests
     void
     discretize()
     {
-      discretization = std::make_unique<Discretization<dim>>(scene, *mesh);
+      discretization =
+        std::make_unique<Discretization<dim>>(scene, *mesh, stiffening);
     }
 
     void

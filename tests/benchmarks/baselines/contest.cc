@@ -1,3 +1,5 @@
+#include <common/solvers/safeguarded_solver.h>
+
 #include <tests/benchmarks/baselines/contest.h>
 #include <tests/benchmarks/baselines/gauss_seidel.h>
 #include <tests/benchmarks/baselines/linear_cg.h>
@@ -58,7 +60,8 @@ namespace Benchmark
   const std::vector<std::string> &
   solver_names()
   {
-    static const std::vector<std::string> names = {"algorithm 3",
+    static const std::vector<std::string> names = {"default",
+                                                   "algorithm 3",
                                                    "algorithm 3 W",
                                                    "algorithm 3 monotone",
                                                    "algorithm 3 monotone W",
@@ -107,6 +110,14 @@ namespace Benchmark
       setup = seconds();
     }
 
+    /** How often there was something to record: the iterations of a solver that
+     * did not live to report them. */
+    unsigned int
+    calls() const
+    {
+      return n_calls;
+    }
+
     double
     setup_seconds() const
     {
@@ -116,6 +127,10 @@ namespace Benchmark
     void
     operator()(const std::function<VectorType()> &iterate)
     {
+      ++n_calls;
+      if (seconds() > contest.limit)
+        throw std::runtime_error(
+          "stopped after " + std::to_string(int(contest.limit)) + " seconds");
       if (contest.history == nullptr)
         return;
       const double now     = seconds();
@@ -134,7 +149,7 @@ namespace Benchmark
     double                     norm      = 1.;
     Clock::time_point          start;
     double                     paused = 0, setup = 0;
-    unsigned int               n_iterations = 0;
+    unsigned int               n_iterations = 0, n_calls = 0;
 
     static double
     since(const Clock::time_point &time)
@@ -157,10 +172,12 @@ namespace Benchmark
   template <int dim>
   Contest<dim>::Contest(NestedIteration<dim> &nest,
                         const double          n_coarser,
-                        const double          seconds)
+                        const double          seconds,
+                        const double          limit)
     : nest(nest)
     , n_coarser(n_coarser)
     , seconds(seconds)
+    , limit(limit)
     , points(node_points(*nest.discretization))
     , bonded(
         bond(nest.discretization->problem(), nest.displacement, nest.state))
@@ -272,11 +289,16 @@ namespace Benchmark
 
 
 
+  // "default" is what a user gets; the algorithms are what they are without
+  // safeguards.
   template <int dim>
   SolverSettings
   Contest<dim>::settings_of(const std::string &name) const
   {
     SolverSettings settings = nest.parameters.solver;
+    if (name == "default")
+      return settings;
+    settings.safeguards = false;
     if (name == "algorithm 2")
       settings.algorithm = Algorithm::fixed_point;
     if (name.find("monotone") != std::string::npos)
@@ -296,7 +318,8 @@ namespace Benchmark
   {
     const LevelHierarchy<dim> hierarchy(
       nest.discretization->dof_handler, problem.constraints, problem.matrix);
-    CoulombSolver<dim> solver(hierarchy, problem, settings);
+    // Without safeguards it is a CoulombSolver and no more.
+    SafeguardedSolver<dim> solver(hierarchy, problem, settings);
     recorder.end_setup();
     const SolverReport solution =
       solver.solve(u, state, [&](const unsigned int, const double) {
@@ -305,8 +328,12 @@ namespace Benchmark
     BaselineReport report;
     report.converged  = solution.converged;
     report.iterations = solution.cycles.size();
-    report.memory =
-      hierarchy.memory_consumption() + solver.multigrid().memory_consumption();
+    report.memory     = hierarchy.memory_consumption() + solution.solver_memory;
+    if (!solution.attempts.empty())
+      {
+        report.n_attempts = solution.attempts.size();
+        report.attempt    = solution.attempts.back().name;
+      }
     return report;
   }
 
@@ -367,7 +394,8 @@ namespace Benchmark
                             state,
                             problem.effective_coefficient(),
                             problem.has_friction() &&
-                              problem.friction_law == FrictionLaw::coulomb)
+                              problem.friction_law == FrictionLaw::coulomb,
+                            force_of_rounding(problem, u))
         .largest();
     result.energy = TrescaFunctional<dim>(problem).energy(u, residual, state);
     result.converged  = result.certificate <= 1e-6;
@@ -387,7 +415,7 @@ namespace Benchmark
     start(problem);
     Recorder       recorder(*this, name, problem);
     BaselineReport report;
-    bool           failed = false;
+    std::string    failure;
     try
       {
         report = run(name, problem, recorder);
@@ -395,13 +423,17 @@ namespace Benchmark
     catch (const std::exception &error)
       {
         std::cerr << "  failed: " << error.what() << std::endl;
-        failed = true;
+        failure           = error.what();
+        report.iterations = recorder.calls();
       }
     if (report.n_setups > 1)
       std::cerr << "  " << report.n_setups << " factorisations" << std::endl;
     const double seconds    = recorder.seconds();
     Result       result     = judge(problem);
-    result.converged        = result.converged && !failed;
+    result.converged        = result.converged && failure.empty();
+    result.failure          = failure;
+    result.n_attempts       = report.n_attempts;
+    result.attempt          = report.attempt;
     result.iterations       = report.iterations;
     result.inner_iterations = report.inner_iterations;
     result.setup_seconds    = recorder.setup_seconds();

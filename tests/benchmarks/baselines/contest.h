@@ -4,6 +4,7 @@
 #include <tests/benchmarks/baselines/report.h>
 #include <tests/support/nested_iteration.h>
 
+#include <limits>
 #include <map>
 #include <ostream>
 #include <string>
@@ -29,6 +30,14 @@ namespace Benchmark
     /// Set-up: everything between the assembled matrix and the first iteration.
     double setup_seconds = 0, solve_seconds = 0;
 
+    /// The product's safeguards: how many attempts were made, and the name of
+    /// the last one if there were several.
+    unsigned int n_attempts = 1;
+    std::string  attempt;
+
+    /// Why a solver has stopped, if it has said so.
+    std::string failure;
+
     std::size_t memory      = 0; ///< of the solver, without the matrix
     double      certificate = 0; ///< its largest number
     double      energy      = 0;
@@ -50,10 +59,12 @@ namespace Benchmark
      * @param n_coarser  number of degrees of freedom on the level before; zero
      *                   if there is none.
      * @param seconds    time after which Gauss-Seidel is stopped.
+     * @param limit      time after which any solver is stopped, and has failed.
      */
     Contest(NestedIteration<dim> &nest,
             const double          n_coarser,
-            const double          seconds);
+            const double          seconds,
+            const double          limit = std::numeric_limits<double>::max());
 
     /** From now on errors are written to @p out after each iteration, compared
      * with a solution that is computed now. */
@@ -77,7 +88,7 @@ namespace Benchmark
     class Recorder;
 
     NestedIteration<dim>         &nest;
-    const double                  n_coarser, seconds;
+    const double                  n_coarser, seconds, limit;
     const std::vector<Point<dim>> points;
     NodalConstraints<dim>         bonded;
     const ContactBoundary<dim>    nothing;

@@ -4,6 +4,7 @@
 #include <common/contact/nodal_constraints.h>
 
 #include <functional>
+#include <string>
 
 namespace Benchmark
 {
@@ -20,6 +21,10 @@ namespace Benchmark
     unsigned int inner_iterations = 0; ///< of GMRES within them
     unsigned int n_setups         = 1; ///< factorisations, or AMG hierarchies
     std::size_t  memory           = 0; ///< bytes held at most
+
+    /// The product's safeguards: how many attempts, and the name of the last.
+    unsigned int n_attempts = 1;
+    std::string  attempt;
   };
 
   /**
