@@ -5,10 +5,9 @@
         --solvers=PROGRAM --scenes2d=FOLDER --scenes3d=FOLDER --runs=FOLDER
         --data=FOLDER [--quick] [--only=PART,...]
 
-The parts are precision, cycles, solvers, stopping and stability. What is measured,
-and on which
-meshes, stands in runs.py. Nothing is written of a
-run that did not end well; then this program does not, either."""
+The parts are precision, cycles, solvers, stopping and stability. What is
+measured, and on which meshes, stands in runs.py. Nothing is written of a run that
+did not end well; then this program does not, either."""
 
 import argparse
 import csv
