@@ -191,6 +191,8 @@ namespace Friction
                        "The file '" + final_name +
                          "' cannot be written completely: is the disk full?");
       }
+    // Some processes may have had nothing to write, the first among them.
+    MPI_Barrier(communicator);
     on_first_process(communicator, [&]() { file.rename(); });
   }
 

@@ -12,6 +12,34 @@ namespace Friction
     {
       return pattern.clone();
     }
+
+
+
+    /** A number of steps, or the word that leaves it to the program. */
+    class StepsOrAutomatic : public Patterns::PatternBase
+    {
+    public:
+      bool
+      match(const std::string &text) const override
+      {
+        return text == "automatic" || steps.match(text);
+      }
+
+      std::string
+      description(const OutputStyle style) const override
+      {
+        return steps.description(style) + ", or 'automatic'";
+      }
+
+      std::unique_ptr<PatternBase>
+      clone() const override
+      {
+        return std::make_unique<StepsOrAutomatic>();
+      }
+
+    private:
+      const Patterns::Integer steps = Patterns::Integer(1);
+    };
   } // namespace
 
 
@@ -23,6 +51,7 @@ namespace Friction
     const auto number   = make(Patterns::Double());
     const auto positive = make(Patterns::Double(1e-300));
     const auto steps    = make(Patterns::Integer(1));
+    const auto sweeps   = make(StepsOrAutomatic());
     const auto flag     = make(Patterns::Bool());
     const auto choice   = [](const std::string &choices) {
       return make(Patterns::Selection(choices));
@@ -289,15 +318,16 @@ namespace Friction
       {"Solver", "Cycle", "V", choice("V|W"), "Kind of the multigrid cycle."},
       {"Solver",
        "Smoothing steps",
-       "3",
-       steps,
+       "automatic",
+       sweeps,
        "Relaxation sweeps on the leaf mesh, before and after the "
-       "coarse correction."},
+       "coarse correction. 'automatic': 3, and more the less compressible the "
+       "material is, from a Poisson ratio of 0.45 on."},
       {"Solver",
        "Coarse smoothing steps",
-       "6",
-       steps,
-       "The same on the correction levels."},
+       "automatic",
+       sweeps,
+       "The same on the correction levels. 'automatic': 6, or more likewise."},
       {"Solver",
        "Coarsest solver",
        "automatic",

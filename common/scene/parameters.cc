@@ -167,6 +167,12 @@ namespace Friction
         return Utilities::string_to_int(get(path));
       }
 
+      unsigned int
+      steps(const std::string &path, const unsigned int automatic)
+      {
+        return get(path) == "automatic" ? automatic : integer(path);
+      }
+
       bool
       flag(const std::string &path)
       {
@@ -426,6 +432,20 @@ namespace Friction
                          " is 'discretisation', but errors are not estimated; "
                          "set 'Refinement/Estimate error' or take a number.");
       solver.stop_at_discretization = true;
+    }
+
+
+
+    // The less a material can be compressed, the worse sweeps and coarse
+    // corrections reduce displacements that hardly change volumes. Sweeps that
+    // follow each other through the cache are the cheapest remedy; see
+    // doc/benchmark/incompressible.txt. Three of them up to a Poisson ratio of
+    // 0.45, where the ratio of the two moduli is nine.
+    unsigned int
+    enough_sweeps(const Material &material)
+    {
+      const double ratio = material.lambda() / material.mu();
+      return std::lround(std::min(20., std::max(3., ratio / 3.)));
     }
   } // namespace
 
@@ -712,9 +732,10 @@ namespace Friction
         (values.get("Solver/Local solver") == "secular equation"
            ? LocalSolver::secular_equation
            : LocalSolver::uzawa);
-      solver.smoothing_steps = values.integer("Solver/Smoothing steps");
+      const unsigned int sweeps = enough_sweeps(parameters.material);
+      solver.smoothing_steps = values.steps("Solver/Smoothing steps", sweeps);
       solver.coarse_smoothing_steps =
-        values.integer("Solver/Coarse smoothing steps");
+        values.steps("Solver/Coarse smoothing steps", std::max(6u, sweeps));
       read_inner_tolerance(values, parameters);
       solver.outer_tolerance = values.number("Solver/Outer tolerance");
       solver.certificate_tolerance =

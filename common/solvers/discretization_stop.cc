@@ -29,7 +29,7 @@ namespace Friction
   template <int dim>
   SolverSettings
   DiscretizationStop<dim>::settings_for(
-    const types::global_dof_index n_dofs) const
+    const dealii::types::global_dof_index n_dofs) const
   {
     SolverSettings result = settings;
     if (settings.stop_at_discretization && error > 0)
@@ -49,8 +49,8 @@ namespace Friction
 
   template <int dim>
   void
-  DiscretizationStop<dim>::add_estimate(const ErrorEstimate          &estimate,
-                                        const types::global_dof_index n_dofs)
+  DiscretizationStop<dim>::add_estimate(
+    const ErrorEstimate &estimate, const dealii::types::global_dof_index n_dofs)
   {
     error = estimate.energy_norm > 0 ? estimate.total / overestimation : 0.;
     energy_norm = estimate.energy_norm;

@@ -4,6 +4,8 @@
 #include <common/estimate/residual_estimator.h>
 #include <common/scene/solver_settings.h>
 
+#include <deal.II/base/types.h>
+
 namespace Friction
 {
   using namespace dealii;
@@ -29,17 +31,18 @@ namespace Friction
 
     /** The settings to solve the next mesh with.
      * @param n_dofs  number of unknowns on it. */
-    SolverSettings settings_for(const types::global_dof_index n_dofs) const;
+    SolverSettings
+    settings_for(const dealii::types::global_dof_index n_dofs) const;
 
     /** Is told the estimated error of a mesh. */
-    void add_estimate(const ErrorEstimate          &estimate,
-                      const types::global_dof_index n_dofs);
+    void add_estimate(const ErrorEstimate                  &estimate,
+                      const dealii::types::global_dof_index n_dofs);
 
   private:
-    const SolverSettings    settings;
-    double                  error       = 0; // energy norm; unknown if zero
-    double                  energy_norm = 0;
-    types::global_dof_index n_dofs_then = 0;
+    const SolverSettings            settings;
+    double                          error = 0; // energy norm; unknown if zero
+    double                          energy_norm = 0;
+    dealii::types::global_dof_index n_dofs_then = 0;
   };
 } // namespace Friction
 

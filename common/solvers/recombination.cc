@@ -130,14 +130,11 @@ namespace Friction
           gram(i, j) = gram(j, i) = *next++;
       }
     // Scaled to a unit diagonal; directions that are numerically dependent are
-    // left out by the pivoted factorisation.
+    // left out by the pivoted factorisation. So is one without energy, like a
+    // correction from coarse levels on which nothing can move.
     Eigen::VectorXd scale(n);
     for (unsigned int i = 0; i < n; ++i)
-      {
-        if (!(gram(i, i) > 0))
-          return 0;
-        scale(i) = 1. / std::sqrt(gram(i, i));
-      }
+      scale(i) = gram(i, i) > 0 ? 1. / std::sqrt(gram(i, i)) : 0.;
     const Eigen::MatrixXd scaled =
       scale.asDiagonal() * gram * scale.asDiagonal();
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);

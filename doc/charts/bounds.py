@@ -33,9 +33,9 @@ def draw(output):
     axes.set_ylabel(r"coefficient of friction $\mathcal{F}$")
     grid(axes)
     mid = 0.325
-    top = headline(figure, "The more nearly incompressible, the more friction in 2D "
-             "and the less in 3D", "Below the lines a static solution is known "
-             "to exist (Eck).", width=56)
+    top = headline(figure, "The more nearly incompressible, the more friction "
+                   "in 2D and the less in 3D", "Below the lines a static "
+                   "solution is known to exist (Eck).", width=56)
     axes_below(figure, top, 0.1)
     axes.plot([mid, mid], [bound_2d(mid), bound_3d(mid)], "o", color="k",
               markersize=4)

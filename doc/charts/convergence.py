@@ -54,8 +54,9 @@ def draw(data, output, name, subject):
     table = Table(data / f"convergence-{name}.csv", COLUMNS)
     goal = table.remark("discretisation_error")
     lines = curves(table)
-    if "algorithm 3" not in lines:
-        raise DataError(f"{table.path}: nothing of algorithm 3.")
+    for family in ("algorithm 3", "newton"):
+        if not any(solver.startswith(family) for solver in lines):
+            raise DataError(f"{table.path}: nothing of {family}.")
     # Where the first guess is as good as the mesh already, one would stop at a
     # tenth, which is what the option of the solver does.
     start = max(errors[0] for _, errors in lines.values())
@@ -126,5 +127,5 @@ def draw(data, output, name, subject):
                   transform=axes.transAxes, fontsize=7, va="top", color="0.35")
     dofs = f"{int(table.remark('dofs')):,}".replace(",", " ")
     axes_below(figure, headline(figure, message(arrivals, goal_name),
-                                f"{subject} {dofs} degrees of freedom."), 0.08)
+                                f"{subject} N = {dofs}."), 0.08)
     save(figure, output, f"convergence-{name}.svg")

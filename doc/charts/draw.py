@@ -3,7 +3,7 @@
 
     draw.py DATA OUTPUT [--quick] [--only=PART,...]
 
-The parts are precision, cycles, solvers, stability and bounds. Missing or
+The parts are precision, cycles, solvers, stopping, stability and bounds. Missing or
 impossible data are an error. Stability maps are drawn of all files
 stability-*.csv that are there."""
 
@@ -17,6 +17,7 @@ import cycles
 import runs
 import scaling
 import stability
+import stopping
 import work_precision
 from chart import DataError
 
@@ -31,7 +32,10 @@ def draw(part, data, output, quick):
     elif part == "solvers":
         for what in runs.solvers(quick):
             convergence.draw(data, output, what.name, what.subject)
-            scaling.draw(data, output, what.name, what.subject)
+            scaling.draw(data, output, what.name, what.subject,
+                         runs.patience(quick))
+    elif part == "stopping":
+        stopping.draw(data, output, runs.STOPPING_SUBJECT)
     elif part == "stability":
         for path in sorted(data.glob("stability-*.csv")):
             stability.draw(path, output)

@@ -5,9 +5,9 @@
         --solvers=PROGRAM --scenes2d=FOLDER --scenes3d=FOLDER --runs=FOLDER
         --data=FOLDER [--quick] [--only=PART,...]
 
-The parts are precision, cycles, solvers and stability. What is measured, and on which
-meshes, stands in runs.py. Nothing is written of a
-run that did not end well; then this program does not, either."""
+The parts are precision, cycles, solvers, stopping and stability. What is
+measured, and on which meshes, stands in runs.py. Nothing is written of a run that
+did not end well; then this program does not, either."""
 
 import argparse
 import csv
@@ -17,6 +17,7 @@ import time
 from pathlib import Path
 
 import h5py
+import numpy as np
 
 import runs
 from chart import DataError, Table
@@ -40,6 +41,16 @@ def run(command, log, allowed=(0,)):
         raise DataError(f"{' '.join(map(str, command))}\nended with status "
                         f"{status}; the last lines of {log}:\n{tail}")
     return status
+
+
+def append(table, other):
+    """Adds the rows of another table with the same columns."""
+    header, *rows = other.read_text().splitlines(keepends=True)
+    with open(table, "r+") as file:
+        if file.readline() != header:
+            raise DataError(f"{other}: other columns.")
+        file.seek(0, 2)
+        file.writelines(rows)
 
 
 def run_for(command, log):
@@ -119,6 +130,33 @@ class Measurements:
                 half_widths = (f"{table.remark('contact_half_width'):.12g},"
                                f"{table.remark('stick_half_width'):.12g}")
 
+        if self.options.quick:
+            self.check_reference()
+
+    def check_reference(self):
+        """Where the exact solution is known, the errors against a reference have
+        to fit those against the exact one: nearly orthogonal, the error of a level
+        is what it lacks to the reference and the error of the latter."""
+        say("errors against a reference and against the exact solution")
+        coarse, finer = 2, 2
+        errors = {}
+        for name, overrides in (
+                ("exact", [f"Refinement/Levels={coarse + finer}"]),
+                ("reference", [f"Refinement/Levels={coarse}",
+                               f"--reference=uniform:{finer}",
+                               "Scene/Exact displacement="])):
+            table = self.runs / f"check-{name}.csv"
+            run([self.options.precision, 2, self.scene(2, "manufactured"),
+                 f"--table={table}", "--half-widths=1,0.5", *runs.UNIFORM,
+                 "Refinement/Initial refinements=1", *overrides],
+                self.runs / f"check-{name}.log")
+            errors[name] = Table(table, ("energy_error",))["energy_error"]
+        exact = errors["exact"][:coarse + 1]
+        sums = np.hypot(errors["reference"], errors["exact"][-1])
+        if not np.allclose(sums, exact, rtol=1e-3):
+            raise DataError("Errors against a reference do not fit those against "
+                            f"the exact solution: {sums} and {exact}.")
+
     def cycles(self):
         for what in runs.cycles(self.options.quick):
             rows = []
@@ -148,6 +186,7 @@ class Measurements:
                       f"Contact/Friction coefficient={friction}",
                       f"Solver/Coarse correction={correction}",
                       f"Solver/Truncation={truncation}",
+                      "Solver/Safeguards=false",
                       f"Solver/Maximum cycles={runs.MOST_CYCLES}"],
                      self.runs / f"{directory.name}.log", allowed=(0, 1))
         with h5py.File(history) as file:
@@ -159,23 +198,51 @@ class Measurements:
                  int(not (status == 1 and i == last))]
                 for i in range(last + 1)]
 
+    def stopping(self):
+        columns = ("level", "dofs", "cycles", "solve_seconds", "energy",
+                   "contact_nodes", "sticky_nodes")
+        rows = []
+        for dim, scene, overrides in runs.stopping(self.options.quick):
+            for tolerance in ("1e-9", "discretisation"):
+                say(f"when to stop: {scene}, {tolerance}")
+                directory = self.runs / f"stopping-{scene}-{tolerance}"
+                run([self.programs[dim], self.scene(dim, scene), *overrides,
+                     f"Output/Directory={directory}", "Output/Fields=false",
+                     f"Solver/Inner tolerance={tolerance}"],
+                    self.runs / f"{directory.name}.log")
+                with h5py.File(directory / "history.h5") as file:
+                    levels = [file["levels"][name][:] for name in columns]
+                rows += [[scene, tolerance, *values] for values in zip(*levels)]
+        self.write("stopping.csv", ["scene", "tolerance", *columns], rows)
+
     def solvers(self):
         if not self.options.solvers:
             raise DataError("--solvers=PROGRAM is missing.")
         for what in runs.solvers(self.options.quick):
             say(f"all solvers: {what.name}")
-            files = {kind: self.data / f"{kind}-{what.name}.csv"
-                     for kind in ("scaling", "convergence")}
-            unfinished = {kind: file.with_suffix(".part")
-                          for kind, file in files.items()}
-            run([self.options.solvers, what.dim,
-                 self.scene(what.dim, what.scene), "--every-level",
-                 f"--table={unfinished['scaling']}",
-                 f"--history={unfinished['convergence']}",
-                 f"--seconds={2 if self.options.quick else runs.PATIENCE}",
-                 *what.overrides], self.runs / f"solvers-{what.name}.log")
-            for kind, file in files.items():
-                unfinished[kind].replace(file)
+            table = self.data / f"scaling-{what.name}.part"
+            history = self.data / f"convergence-{what.name}.part"
+            of_first = [] if what.history_of_larger else [f"--history={history}"]
+            self.compare(what, f"solvers-{what.name}",
+                         ["--every-level", f"--table={table}", *of_first,
+                          *what.overrides])
+            if what.larger:
+                say(f"those that get so far: {what.name}, one more mesh")
+                last = self.runs / f"larger-{what.name}.csv"
+                of_last = ([f"--history={history}"] if what.history_of_larger
+                           else [])
+                self.compare(what, f"larger-{what.name}",
+                             [f"--table={last}", *of_last,
+                              f"--solvers={','.join(runs.WITHOUT_FACTORS)}",
+                              *what.larger])
+                append(table, last)
+            for file in (table, history):
+                file.replace(file.with_suffix(".csv"))
+
+    def compare(self, what, name, arguments):
+        run([self.options.solvers, what.dim, self.scene(what.dim, what.scene),
+             f"--seconds={runs.patience(self.options.quick)}", *arguments],
+            self.runs / f"{name}.log")
 
     def stability(self):
         if not self.options.solvers:
@@ -249,6 +316,7 @@ def main():
     measurements = Measurements(options)
     parts = {"precision": measurements.precision,
              "cycles": measurements.cycles, "solvers": measurements.solvers,
+             "stopping": measurements.stopping,
              "stability": measurements.stability}
     try:
         for part in options.only.split(","):

@@ -8,7 +8,7 @@ the subject that is written below its title, the scene, and the sizes.
 
 
 # All parts that can be asked for, and those of them for which nothing is measured.
-PARTS = ("precision", "cycles", "solvers", "stability", "bounds")
+PARTS = ("precision", "cycles", "solvers", "stopping", "stability", "bounds")
 DRAWN_ONLY = ("bounds",)
 
 UNIFORM = ["Refinement/Strategy=uniform"]
@@ -104,9 +104,19 @@ class Solvers:
     """Charts 2 and 3: all solvers on all levels of a scene, with their histories
     on the last one."""
 
-    def __init__(self, name, dim, scene, subject, overrides):
+    def __init__(self, name, dim, scene, subject, overrides, larger=None,
+                 history_of_larger=False):
+        """`larger` are the overrides for one more mesh, for those solvers that
+        get so far. The histories are those of the first run, or of this one."""
         self.name, self.dim, self.scene = name, dim, scene
         self.subject, self.overrides = subject, overrides
+        self.larger, self.history_of_larger = larger, history_of_larger
+
+
+# All but those that factorise.
+WITHOUT_FACTORS = ("algorithm 3", "algorithm 3 W", "algorithm 3 monotone",
+                   "algorithm 3 monotone W", "algorithm 2", "newton gmres",
+                   "gauss-seidel", "linear multigrid", "linear cg+ml")
 
 
 def levels(initial, number):
@@ -114,11 +124,14 @@ def levels(initial, number):
             f"Refinement/Levels={number}", "Refinement/Maximum dofs=100000000"]
 
 
-# After this many seconds on a level an opponent that does not arrive is stopped.
-PATIENCE = 10
+def patience(quick):
+    """After this many seconds on a level Gauss-Seidel is stopped."""
+    return 2 if quick else 10
 
 
 def solvers(quick):
+    adaptive = ["Refinement/Strategy=adaptive",
+                f"Refinement/Initial refinements={0 if quick else 1}"]
     return [
         Solvers("hertz", 2, "hertz",
                 "Scene hertz (2D): half disc on a plane, uniform meshes, F = 0.4, "
@@ -133,13 +146,26 @@ def solvers(quick):
         Solvers("block-3d", 3, "block",
                 "Scene block (3D): cube, uniform meshes, F = 0.4, Poisson ratio "
                 "0.3.",
-                UNIFORM + (levels(1, 1) if quick else levels(2, 3))),
+                UNIFORM + (levels(1, 1) if quick else levels(3, 2)),
+                larger=UNIFORM + (levels(1, 2) if quick else levels(3, 3))),
         Solvers("cylinder", 3, "cylinder",
                 "Scene cylinder (3D): on two rods, adaptive meshes, F = 0.4, "
-                "Poisson ratio 0.325.",
-                ["Refinement/Strategy=adaptive"] +
-                dofs(400 if quick else 100000) +
-                [f"Refinement/Initial refinements={0 if quick else 1}"])]
+                "Poisson ratio 0.325. On the last one not all solvers finish in "
+                "time.",
+                adaptive + dofs(100 if quick else 50000),
+                larger=adaptive + dofs(400 if quick else 100000),
+                history_of_larger=True)]
+
+
+STOPPING_SUBJECT = ("Cycles per level of the scenes hertz (2D) and cylinder (3D), "
+                    "adaptive, F = 0.4. The first level has no error to stop at.")
+
+
+def stopping(quick):
+    """Rows (dimension, scene, overrides)."""
+    return [(2, "hertz", dofs(400 if quick else 65000)),
+            (3, "cylinder", dofs(400 if quick else 60000) +
+             [f"Refinement/Initial refinements={0 if quick else 2}"])]
 
 
 class Case:

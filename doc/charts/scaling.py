@@ -27,11 +27,14 @@ def message(growths):
     return text
 
 
-def draw(data, output, name, subject):
+def draw(data, output, name, subject, patience):
     table = Table(data / f"scaling-{name}.csv", COLUMNS)
-    solved = table["converged"] == 1
     seconds = table["setup_seconds"] + table["solve_seconds"]
-    if np.any(seconds <= 0) or np.any(table["memory_bytes"] < 0):
+    # One that has been stopped has not arrived, however good its last iterate.
+    stopped = ((table["solver"] == "gauss-seidel") &
+               (table["solve_seconds"] >= patience))
+    solved = (table["converged"] == 1) & ~stopped
+    if np.any(seconds <= 0) or np.any(table["memory_bytes"][solved] <= 0):
         raise DataError(f"{table.path}: a time or memory that cannot be.")
     figure, axes = plt.subplots(2, 1, figsize=(7, 7), sharex=True)
     figure.subplots_adjust(left=0.1, right=0.7, bottom=0.07,
@@ -81,6 +84,15 @@ def draw_solver(panel, table, values, solved, solver, failures):
         if failed.any() and not len(x):
             return (values[failed][-1], f"{solver}  not solved", color)
     if not len(x):
+        return None
+    if x.max() < 0.3 * table["dofs"].max():
+        # The line ends early, and has its name there.
+        panel.annotate(f"{solver}  {growth(x, y)}",
+                       (x.max(), y[np.argmax(x)]), xytext=(7, 0),
+                       textcoords="offset points", va="center", color=color,
+                       fontsize=8, zorder=6,
+                       bbox={"facecolor": "white", "edgecolor": "none",
+                             "alpha": 0.85, "pad": 0.8})
         return None
     return (y[np.argmax(x)], f"{solver}  {growth(x, y)}", color)
 

@@ -15,7 +15,7 @@ row() {
   shift
   "$program" "$scene" Output/Fields=false Output/Verbosity=levels \
     "Output/Directory=$directory" "Refinement/Maximum dofs=$dofs" \
-    'Solver/Maximum cycles=100' "$@" |
+    'Solver/Maximum cycles=100' Solver/Safeguards=false "$@" |
     awk -v label="$label" '
       $1 ~ /^[0-9]+$/ && NF >= 10 {cycles = cycles sprintf(" %3d", $7)
                                    seconds += $10; dofs = $3}

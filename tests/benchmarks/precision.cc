@@ -562,6 +562,8 @@ main(int argc, char *argv[])
                        "[Section/Entry=value ...]\n";
           return 2;
         }
+      if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+        throw Friction::InputError("This is measured on one process only.");
       std::vector<std::string> arguments(argv + 3, argv + argc);
       const auto               options = Benchmark::take_options(arguments);
       const auto parameters = Friction::read_parameters(argv[2], arguments);

@@ -6,6 +6,8 @@
 #include <common/output/fields.h>
 #include <common/parallel/collective_error.h>
 
+#include <deal.II/base/hdf5.h>
+
 #include <deal.II/distributed/tria.h>
 
 #include <deal.II/dofs/dof_tools.h>
@@ -15,6 +17,8 @@
 #include <deal.II/fe/mapping_q1.h>
 
 #include <deal.II/grid/grid_generator.h>
+
+#include <deal.II/lac/full_matrix.h>
 
 #include <filesystem>
 #include <fstream>
@@ -132,6 +136,63 @@ namespace
                          {"<Piece", "<DataSet ", "<Attribute", "Dimensions"});
       }
   }
+
+
+
+  // In the unit square u=(xy,0) has the divergence y, with means of 1/4 and 3/4
+  // over two rows of cells. With lambda = 1 this is the third normal stress.
+  // Of a single cell, all processes but one have nothing to write.
+  void
+  test_stresses(const VolumetricStrain kind, const unsigned int n_refinements)
+  {
+    const std::string name = "fields-test-stresses";
+    on_first_process(MPI_COMM_WORLD,
+                     [&]() { std::filesystem::remove_all(name); });
+    const RunDirectory directory(name, MPI_COMM_WORLD);
+    FieldWriter<2>     writer(
+      directory, Material(2.5, .25, kind), 2, FieldFormat::hdf5);
+
+    parallel::distributed::Triangulation<2> triangulation(MPI_COMM_WORLD);
+    GridGenerator::hyper_cube(triangulation);
+    triangulation.refine_global(n_refinements);
+    const FESystem<2> fe(FE_Q<2>(1), 2);
+    DoFHandler<2>     dof_handler(triangulation);
+    dof_handler.distribute_dofs(fe);
+    LinearAlgebra::distributed::Vector<double> u(
+      dof_handler.locally_owned_dofs(),
+      DoFTools::extract_locally_relevant_dofs(dof_handler),
+      MPI_COMM_WORLD);
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        for (const unsigned int v : cell->vertex_indices())
+          if (dof_handler.locally_owned_dofs().is_element(
+                cell->vertex_dof_index(v, 0)))
+            u(cell->vertex_dof_index(v, 0)) =
+              cell->vertex(v)[0] * cell->vertex(v)[1];
+    u.update_ghost_values();
+    writer.write_level(0,
+                       MappingQ1<2>(),
+                       dof_handler,
+                       u,
+                       AffineConstraints<double>(),
+                       std::vector<ContactRecord<2>>());
+
+    if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)
+      return;
+    std::cout << (kind == VolumetricStrain::mean ? "mean" : "pointwise")
+              << " volumetric strain, " << (n_refinements == 0 ? 1 : 4)
+              << " cells: stress_zz";
+    const HDF5::File file(directory.file("body-00.h5"),
+                          HDF5::File::FileAccessMode::open);
+    const auto       stresses =
+      file.open_dataset("stress_zz").read<FullMatrix<double>>();
+    std::set<double> values;
+    for (unsigned int i = 0; i < stresses.m(); ++i)
+      values.insert(stresses(i, 0));
+    for (const double value : values)
+      std::cout << ' ' << value;
+    std::cout << std::endl;
+  }
 } // namespace
 
 int
@@ -143,4 +204,7 @@ main(int argc, char **argv)
       test<2>(format);
       test<3>(format);
     }
+  test_stresses(VolumetricStrain::pointwise, 1);
+  test_stresses(VolumetricStrain::mean, 1);
+  test_stresses(VolumetricStrain::mean, 0);
 }

@@ -102,6 +102,24 @@ main()
               << std::endl;
   }
 
+  // The sweeps that nobody asked for.
+  for (const std::string nu : {"0", "0.3", "0.45", "0.49", "0.4999"})
+    {
+      const SolverSettings automatic =
+        read_parameters("some.scene.prm", {"Material/Poisson ratio=" + nu})
+          .solver;
+      const SolverSettings given =
+        read_parameters("some.scene.prm",
+                        {"Material/Poisson ratio=" + nu,
+                         "Solver/Smoothing steps=2",
+                         "Solver/Coarse smoothing steps=1"})
+          .solver;
+      std::cout << "sweeps for nu = " << nu << ": " << automatic.smoothing_steps
+                << ", " << automatic.coarse_smoothing_steps << "; given "
+                << given.smoothing_steps << ", " << given.coarse_smoothing_steps
+                << std::endl;
+    }
+
   std::cout << "Eck's bounds " << eck_bound(2, .3) << ' ' << eck_bound(3, .3)
             << "\n\n";
 

@@ -176,13 +176,14 @@ namespace
 
 
 
-  // With hardly any cycles nothing can be solved, and that is what is said.
+  // Nobody satisfies the laws to the last digit. If that is what is asked for,
+  // everything is tried, and what is said in the end is that it was not enough.
   void
   test_failure()
   {
     std::cout << "Failure" << std::endl;
-    Parameters p            = block_parameters<2>(FrictionLaw::coulomb, .4);
-    p.solver.maximum_cycles = 2;
+    Parameters p = block_parameters<2>(FrictionLaw::coulomb, .4);
+    p.solver.certificate_tolerance   = 1e-30;
     p.refinement.initial_refinements = 3;
     VectorType         u;
     ContactState       state(0, false);
@@ -190,6 +191,7 @@ namespace
     check(!report.converged, "it is not solved");
     for (const SolverAttempt &attempt : report.attempts)
       std::cout << attempt.name << std::endl;
+    check_below(report.certificate.largest(), 1e-8, "almost it is");
   }
 } // namespace
 

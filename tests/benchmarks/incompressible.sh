@@ -1,0 +1,63 @@
+#!/bin/sh
+# The rate of the multigrid iteration for materials that can hardly be
+# compressed: cycles, contraction per cycle and solve time on the finest level,
+# with the sweeps of compressible materials, with the automatic ones, and with
+# more recombined steps besides.
+# Usage: incompressible.sh PROGRAM_2D SCENES_2D PROGRAM_3D SCENES_3D
+program_2d=$1
+scenes_2d=$2
+program_3d=$3
+scenes_3d=$4
+directory=$(mktemp -d)
+trap 'rm -rf "$directory"' EXIT
+
+# Of the last row of the run's table.
+run() {
+  "$@" Solver/Safeguards=false Output/Fields=false Output/Verbosity=levels Refinement/Estimate\ error=false \
+    "Output/Directory=$directory" 'Solver/Maximum cycles=200' |
+    awk '$1 ~ /^[0-9]+$/ && NF >= 10 {cycles = $7; rate = $8; seconds = $10}
+         /^No convergence/ {failed = 1}
+         END {if (failed) printf "       fails       ";
+              else printf "%4d  %5.3f %6.2f s", cycles, rate, seconds}'
+}
+
+table() {
+  echo
+  echo "$1"
+  shift
+  echo "    nu  strain     3+3 and 6+6 sweeps       automatic sweeps" \
+    "        5 recombined steps"
+  for nu in 0.3 0.45 0.49 0.499 0.4999; do
+    for strain in pointwise mean; do
+      printf '%6s  %-9s  ' $nu $strain
+      run "$@" "Material/Poisson ratio=$nu" \
+        "Material/Volumetric strain=$strain" 'Solver/Smoothing steps=3' \
+        'Solver/Coarse smoothing steps=6'
+      printf '  | '
+      run "$@" "Material/Poisson ratio=$nu" \
+        "Material/Volumetric strain=$strain"
+      printf '  | '
+      run "$@" "Material/Poisson ratio=$nu" \
+        "Material/Volumetric strain=$strain" 'Solver/Recombined steps=5'
+      echo
+    done
+  done
+}
+
+echo "cycles, contraction per cycle and seconds on the finest level, to a"
+echo "relative increment of 1e-9; 'fails' if a level takes more than 200 cycles"
+table "linear: block bonded to its support, 33282 dofs" \
+  "$program_2d" "$scenes_2d/block.prm" Refinement/Levels=5 \
+  'Boundary conditions/Displacement=3: 0.02, -0.02; 2: 0, 0' \
+  'Contact/Boundary id=-1' Obstacle/Kind=none
+table "friction: block, F = 0.05, 33282 dofs" \
+  "$program_2d" "$scenes_2d/block.prm" Refinement/Levels=5 \
+  'Contact/Friction coefficient=0.05'
+table "friction: hertz, F = 0.4, adaptive to 30000 dofs" \
+  "$program_2d" "$scenes_2d/hertz.prm" 'Refinement/Maximum dofs=30000'
+table "linear: cube bonded to its support, 14739 dofs" \
+  "$program_3d" "$scenes_3d/block.prm" Refinement/Levels=3 \
+  'Boundary conditions/Displacement=5: 0.02, 0.01, -0.02; 4: 0, 0, 0' \
+  'Contact/Boundary id=-1' Obstacle/Kind=none
+table "friction: cube, F = 0.4, 14739 dofs" \
+  "$program_3d" "$scenes_3d/block.prm" Refinement/Levels=3
