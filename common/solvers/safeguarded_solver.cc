@@ -213,10 +213,11 @@ namespace Friction
 
 
 
-  // What mixing extrapolates from are changes of phases as well, and where there
-  // is very much friction nothing good comes of that. Fixed small steps that do
-  // without get close to the solution, slowly; where the phases are those of the
-  // solution, or nearly so, mixing does the rest. All of it is one attempt.
+  // What mixing extrapolates from are changes of phases as well, and where
+  // there is very much friction nothing good comes of that. Fixed small steps
+  // that do without get close to the solution, slowly; where the phases are
+  // those of the solution, or nearly so, mixing does the rest. All of it is one
+  // attempt.
   template <int dim>
   SolverReport
   SafeguardedSolver<dim>::careful_algorithm_2(Iterate        &iterate,
@@ -233,8 +234,9 @@ namespace Friction
     // CoulombSolver divides this by the coefficient.
     careful.outer_tolerance =
       .01 * std::max(1., problem.effective_coefficient());
-    const std::string name = "Algorithm 2 with small steps of the normal forces";
-    SolverReport      report, steps;
+    const std::string name =
+      "Algorithm 2 with small steps of the normal forces";
+    SolverReport report, steps;
     {
       CoulombSolver<dim> solver(hierarchy, problem, careful);
       report = attempt(name, solver, iterate, steps, progress);

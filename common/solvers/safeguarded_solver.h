@@ -20,8 +20,8 @@ namespace Friction
    *    there is much friction. Each of its problems, with given normal forces,
    *    is convex, which makes it slow and reliable;
    * 4. Algorithm 2 with a fiftieth of each change, and without mixing until the
-   *    normal forces have nearly settled: with so much friction that each change
-   *    of them changes phases, too;
+   *    normal forces have nearly settled: with so much friction that each
+   * change of them changes phases, too;
    * 5. continuation: first the problem with less friction, and its solution as
    *    initial guess for more, until all friction is there.
    *

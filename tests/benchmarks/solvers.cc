@@ -28,7 +28,8 @@
 // --limit    seconds after which any solver is stopped, and has failed.
 // --guess    interpolated (that of the nested iteration), or another one on the
 //            first mesh: zero, random, inside, lifted; see guesses.h.
-// --inclusion  multiplies Young's modulus in a part of the body: at the middle of
+// --inclusion  multiplies Young's modulus in a part of the body: at the middle
+// of
 //            its lower side, half as wide and a quarter as high as the body.
 
 #include <deal.II/base/timer.h>
