@@ -212,7 +212,12 @@ namespace StepFriction2d
   {
     scene.make_coarse_mesh(triangulation);
     if (start == Start::from_checkpoint)
-      return output.load_checkpoint(triangulation);
+      {
+        const unsigned int level = output.load_checkpoint(triangulation);
+        stop.add_estimate(output.last_level().estimated_error,
+                          output.last_level().dofs);
+        return level;
+      }
 
     triangulation.refine_global(parameters.refinement.initial_refinements);
     return 0;
@@ -842,7 +847,7 @@ namespace StepFriction2d
         // <code>Inner tolerance = discretisation</code> the next one will be
         // stopped when its own error is small compared with the error of the
         // mesh, and this is where we learn about the latter.
-        stop.add_estimate(estimate, dof_handler.n_dofs());
+        stop.add_estimate(estimate.total, dof_handler.n_dofs());
 
         record_level(level, estimate);
 

@@ -197,7 +197,12 @@ namespace StepFriction3d
   {
     scene.make_coarse_mesh(triangulation);
     if (start == Start::from_checkpoint)
-      return output.load_checkpoint(triangulation);
+      {
+        const unsigned int level = output.load_checkpoint(triangulation);
+        stop.add_estimate(output.last_level().estimated_error,
+                          output.last_level().dofs);
+        return level;
+      }
 
     triangulation.refine_global(parameters.refinement.initial_refinements);
     return 0;
@@ -208,9 +213,8 @@ namespace StepFriction3d
   // @sect4{ContactProblem::setup_system}
 
   // Degrees of freedom for the leaf mesh and for all levels, numbered node by
-  // node and front by front. A front is a surface now. Sweeps that follow each
-  // other through the cache have to keep a distance of two fronts, so that it
-  // takes a larger cache than in two dimensions to hold what is between them.
+  // node and front by front. A front is a surface now, and fewer of them fit
+  // into the cache.
   template <int dim>
   void
   ContactProblem<dim>::setup_system()
@@ -832,7 +836,6 @@ namespace StepFriction3d
     if (!scene.warning().empty())
       output.console().warning(scene.warning());
 
-    // We start from the undeformed body without forces, or from a checkpoint.
     const unsigned int first_level = make_first_mesh(start);
     Timer              timer;
     setup_system();
@@ -850,9 +853,7 @@ namespace StepFriction3d
         setup_seconds += timer.wall_time();
         solve(level);
 
-        // A level more may mean eight times the unknowns. The limit on their
-        // number stops refinement, not the solution on a mesh that has become
-        // larger than expected.
+        // A level more may mean eight times the unknowns.
         const bool last = level >= parameters.refinement.levels ||
           dof_handler.n_dofs() >= parameters.refinement.maximum_dofs;
         const bool adaptive =
@@ -860,7 +861,7 @@ namespace StepFriction3d
         ErrorEstimate estimate;
         if (parameters.refinement.estimate_error || (adaptive && !last))
           estimate = estimate_error();
-        stop.add_estimate(estimate, dof_handler.n_dofs());
+        stop.add_estimate(estimate.total, dof_handler.n_dofs());
 
         record_level(level, estimate);
 
@@ -883,8 +884,7 @@ namespace StepFriction3d
 
 // @sect3{The <code>main</code> function}
 
-// A scene file, and entries of it that are to be different. The class is
-// instantiated for three dimensions only.
+// A scene file, and entries of it that are to be different.
 int
 main(int argc, char *argv[])
 {

@@ -13,7 +13,7 @@ namespace Friction
   namespace
   {
     // To be increased whenever what is in a checkpoint changes.
-    constexpr unsigned int checkpoint_format = 1;
+    constexpr unsigned int checkpoint_format = 2;
 
 
 
@@ -128,6 +128,15 @@ namespace Friction
                      " within " + std::to_string(report.cycles.size()) +
                      " cycles. Certificate: " + report.certificate.describe() +
                      ".");
+  }
+
+
+
+  template <int dim>
+  const LevelRecord &
+  RunOutput<dim>::last_level() const
+  {
+    return history.levels().back();
   }
 
 

@@ -92,6 +92,10 @@ namespace Friction
      */
     unsigned int load_checkpoint(Triangulation &triangulation);
 
+    /// What is known of the last level that has been recorded, by this run or
+    /// by the one it continues. There must be one.
+    const LevelRecord &last_level() const;
+
   private:
     /// A number that changes if the coarse mesh does.
     static double fingerprint(const Triangulation &triangulation);

@@ -363,13 +363,15 @@ namespace Friction
        "2e-7",
        positive,
        "Relative change of the normal forces that stops the outer "
-       "iteration."},
+       "iteration; divided by the coefficient of friction if that is larger "
+       "than one."},
       {"Solver",
        "Certificate tolerance",
        "1e-6",
        positive,
        "Largest residual of the discrete law of a valid solution, relative "
-       "to the largest nodal force or gap."},
+       "to the largest nodal force or gap; at least 0.01 with the inner "
+       "tolerance 'discretisation'."},
       {"Solver",
        "Maximum cycles",
        "200",

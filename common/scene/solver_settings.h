@@ -117,9 +117,13 @@ namespace Friction
     /// 2 are mixed with, see MixedFixedPoint; zero for none.
     unsigned int mixed_outer_iterations = 0;
 
-    /// Whether to give up an iteration that is getting nowhere, and to try
-    /// others; see SafeguardedSolver.
+    /// Whether to try other iterations where one is getting nowhere; see
+    /// SafeguardedSolver, which then sets the next entry.
     bool safeguards = true;
+
+    /// Whether to end an iteration that would not come to its end within the
+    /// maximum number of cycles; see MultigridResult::stalls().
+    bool gives_up_early = false;
   };
 } // namespace Friction
 

@@ -83,6 +83,25 @@ namespace Friction
         report.contraction      = result.contraction();
       }
 
+    certify(report, u, state);
+    if (!(report.certificate.largest() <= settings.certificate_tolerance))
+      report.converged = false;
+    report.costs         = phase_costs() - before;
+    report.matrix_memory = problem.matrix.memory_consumption();
+    report.solver_memory = iteration.memory_consumption();
+    return report;
+  }
+
+
+
+  template <int dim>
+  void
+  CoulombSolver<dim>::certify(SolverReport       &report,
+                              const VectorType   &u,
+                              const ContactState &state) const
+  {
+    const bool coulomb =
+      problem.has_friction() && problem.friction_law == FrictionLaw::coulomb;
     report.residual.reinit(u);
     problem.matrix.residual(
       report.residual.begin(), problem.forces.begin(), u.begin());
@@ -96,12 +115,6 @@ namespace Friction
                                                problem.effective_coefficient(),
                                                coulomb,
                                                force_of_rounding(problem, u));
-    if (!(report.certificate.largest() <= settings.certificate_tolerance))
-      report.converged = false;
-    report.costs         = phase_costs() - before;
-    report.matrix_memory = problem.matrix.memory_consumption();
-    report.solver_memory = iteration.memory_consumption();
-    return report;
   }
 
 

@@ -120,6 +120,15 @@ namespace Friction
     SolverReport
     solve(VectorType &u, ContactState &state, const Progress &progress = {});
 
+    /**
+     * Fills in what the report says of the solution itself, as opposed to how
+     * it was found: residual, energy and certificate.
+     * @param u  with valid ghosts.
+     */
+    void certify(SolverReport       &report,
+                 const VectorType   &u,
+                 const ContactState &state) const;
+
     const MonotoneMultigrid<dim> &
     multigrid() const
     {

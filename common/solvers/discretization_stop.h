@@ -1,15 +1,12 @@
 #ifndef friction_solvers_discretization_stop_h
 #define friction_solvers_discretization_stop_h
 
-#include <common/estimate/residual_estimator.h>
 #include <common/scene/solver_settings.h>
 
 #include <deal.II/base/types.h>
 
 namespace Friction
 {
-  using namespace dealii;
-
   /**
    * Says when a solution is as good as its mesh: when the error of the
    * iteration is a tenth of that of the discretisation, so that going on would
@@ -34,14 +31,13 @@ namespace Friction
     SolverSettings
     settings_for(const dealii::types::global_dof_index n_dofs) const;
 
-    /** Is told the estimated error of a mesh. */
-    void add_estimate(const ErrorEstimate                  &estimate,
+    /** Is told the estimated error of a mesh, an energy norm. */
+    void add_estimate(const double                          estimated_error,
                       const dealii::types::global_dof_index n_dofs);
 
   private:
     const SolverSettings            settings;
     double                          error = 0; // energy norm; unknown if zero
-    double                          energy_norm = 0;
     dealii::types::global_dof_index n_dofs_then = 0;
   };
 } // namespace Friction

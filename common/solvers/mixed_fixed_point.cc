@@ -73,7 +73,8 @@ namespace Friction
       {
         point           = best_point;
         residual        = best_residual;
-        present_damping = std::max(present_damping / 2., smallest_damping);
+        present_damping = std::min(
+          present_damping, std::max(present_damping / 2., smallest_damping));
         steps.clear();
         changes.clear();
         last_point.clear();

@@ -251,9 +251,12 @@ namespace Friction
               }
             if (cycle >= settings.maximum_cycles)
               break;
-            if (settings.safeguards &&
-                result.stalls(settings.inner_tolerance,
-                              settings.maximum_cycles))
+            if (settings.gives_up_early &&
+                result.stalls(
+                  std::max(settings.inner_tolerance,
+                           settings.energy_tolerance /
+                             std::sqrt(std::max(sums[norm], floor_of_norm))),
+                  settings.maximum_cycles))
               break;
           }
         last_u        = u;

@@ -99,7 +99,7 @@ namespace Friction
      * Iterates until the relative increment is at most the inner tolerance, or
      * until the error itself is at most the energy tolerance. An
      * iteration that would not get there within the maximum number of cycles
-     * is given up early if the settings have safeguards, see
+     * is given up early if the settings allow for it, see
      * MultigridResult::stalls().
      *
      * @param u  initial guess and solution; must be admissible and have the

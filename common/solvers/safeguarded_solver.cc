@@ -41,13 +41,40 @@ namespace Friction
 
 
     bool
-    is_finite(const VectorType &u)
+    is_finite(const VectorType &u, const ContactState &state)
     {
-      double infinite = 0;
+      bool infinite = false;
       for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-        if (!std::isfinite(u.local_element(i)))
-          infinite = 1;
-      return max_over_processes(infinite, u.get_mpi_communicator()) == 0;
+        infinite = infinite || !std::isfinite(u.local_element(i));
+      for (unsigned int p = 0; p < state.size(); ++p)
+        infinite = infinite || !std::isfinite(state.normal_force(p));
+      return !true_on_any_process(infinite, u.get_mpi_communicator());
+    }
+
+
+
+    // The settings of the first attempt may give an iteration up early, if
+    // there is something else to be tried.
+    SolverSettings
+    first_settings(const SolverSettings &settings)
+    {
+      SolverSettings result = settings;
+      result.gives_up_early = settings.safeguards;
+      return result;
+    }
+
+
+
+    // What all other attempts have in common. They are to find a solution, to
+    // the usual tolerance, and by the method that is known to work best.
+    SolverSettings
+    fallback_settings(const SolverSettings &settings)
+    {
+      SolverSettings result    = first_settings(settings);
+      result.energy_tolerance  = 0.;
+      result.coarse_correction = CoarseCorrection::truncated;
+      result.truncation        = TruncationVariant::phases;
+      return result;
     }
   } // namespace
 
@@ -61,7 +88,7 @@ namespace Friction
     : hierarchy(hierarchy)
     , problem(problem)
     , settings(settings)
-    , first(hierarchy, problem, settings)
+    , first(hierarchy, problem, first_settings(settings))
   {}
 
 
@@ -82,7 +109,7 @@ namespace Friction
                             report.certificate.largest()});
     all.cycles.insert(
       all.cycles.end(), report.cycles.begin(), report.cycles.end());
-    if (!is_finite(iterate.u))
+    if (!is_finite(iterate.u, iterate.state))
       iterate = start;
     return report;
   }
@@ -112,13 +139,16 @@ namespace Friction
         // Shorter steps, each of its own direction: a line search works with
         // the normal forces of the moment and may go too far for those that
         // come.
-        SolverSettings cautious    = settings;
-        cautious.coarse_correction = CoarseCorrection::truncated;
-        cautious.truncation        = TruncationVariant::phases;
-        cautious.maximum_damping   = std::min(.5, settings.maximum_damping);
-        cautious.recombined_steps  = 0;
-        bool slow_corrections      = !coulomb || !phases_change(report);
-        if (!slow_corrections)
+        SolverSettings cautious   = fallback_settings(settings);
+        cautious.maximum_damping  = std::min(.5, settings.maximum_damping);
+        cautious.recombined_steps = 0;
+        // Where only the outer iteration of Algorithm 2 has failed, neither of
+        // the two attempts that follow would be any better.
+        const bool outer_failure = coulomb && report.inner_converged &&
+          settings.algorithm == Algorithm::fixed_point;
+        bool slow_corrections =
+          !outer_failure && (!coulomb || !phases_change(report));
+        if (!slow_corrections && !outer_failure)
           {
             CoulombSolver<dim> solver(hierarchy, problem, cautious);
             report = attempt(name_of(problem, settings) + " with short steps",
@@ -164,9 +194,14 @@ namespace Friction
     state = iterate.state;
     if (all.attempts.size() > 1)
       {
-        report.cycles   = all.cycles;
-        report.attempts = all.attempts;
-        report.costs    = phase_costs() - before;
+        // What is reported of a failure is what is returned, and not the end of
+        // an attempt that has been thrown away.
+        if (!report.converged)
+          first.certify(report, u, state);
+        report.converged = all.attempts.back().converged;
+        report.cycles    = all.cycles;
+        report.attempts  = all.attempts;
+        report.costs     = phase_costs() - before;
       }
     return report;
   }
@@ -180,10 +215,8 @@ namespace Friction
                                             SolverReport   &all,
                                             const Progress &progress) const
   {
-    SolverSettings mixed         = settings;
+    SolverSettings mixed         = fallback_settings(settings);
     mixed.algorithm              = Algorithm::fixed_point;
-    mixed.coarse_correction      = CoarseCorrection::truncated;
-    mixed.truncation             = TruncationVariant::phases;
     mixed.outer_damping          = .5;
     mixed.mixed_outer_iterations = 10;
     mixed.maximum_outer_iterations =
@@ -224,10 +257,8 @@ namespace Friction
                                               SolverReport   &all,
                                               const Progress &progress) const
   {
-    SolverSettings careful           = settings;
+    SolverSettings careful           = fallback_settings(settings);
     careful.algorithm                = Algorithm::fixed_point;
-    careful.coarse_correction        = CoarseCorrection::truncated;
-    careful.truncation               = TruncationVariant::phases;
     careful.outer_damping            = .02;
     careful.mixed_outer_iterations   = 0;
     careful.maximum_outer_iterations = 1000;

@@ -12,9 +12,10 @@ namespace Friction
    * nowhere, by whatever else may succeed:
    *
    * 1. the algorithm of the settings, by default Algorithm 3;
-   * 2. the same algorithm with AlgebraicCorrection and steps of length one at
-   *    most: if the coarse levels were the trouble, for example because cells
-   *    are a thousand times longer than wide;
+   * 2. the same algorithm with shorter steps, if phases were still changing;
+   *    otherwise, or if that fails, with AlgebraicCorrection: if the coarse
+   *    levels were the trouble, for example because cells are a thousand times
+   *    longer than wide;
    * 3. Algorithm 2 with half of each change of the normal forces, and with
    *    mixing, see MixedFixedPoint: if Coulomb's law was the trouble, because
    *    there is much friction. Each of its problems, with given normal forces,
@@ -29,11 +30,12 @@ namespace Friction
    * three are left out. Each attempt starts where the one before has ended,
    * except for the last two, which start from the initial guess.
    *
-   * The discrete problem has a solution whatever the coefficient of friction
-   * (the map of normal forces to those of the solution with these forces given
-   * is continuous and bounded, so that Brouwer's theorem applies), if the body
-   * is held. But it may have several, and a solution that is not found is
-   * reported as what it is, by SolverReport::converged.
+   * The discrete problem has a solution whatever the coefficient of friction,
+   * if some admissible displacement has no tangential part at the contact
+   * nodes: then the map of normal forces to those of the solution with these
+   * forces given is continuous and bounded, and Brouwer's theorem applies. But
+   * it may have several, and a solution that is not found is reported as what
+   * it is, by SolverReport::converged.
    */
   template <int dim>
   class SafeguardedSolver
@@ -48,7 +50,9 @@ namespace Friction
 
     /**
      * Solves, and certifies the solution; as CoulombSolver::solve(). The report
-     * is that of the last attempt, with the cycles of all of them.
+     * is that of the last attempt, with the cycles of all of them; if none has
+     * succeeded, residual, energy and certificate are those of what is
+     * returned.
      */
     SolverReport
     solve(VectorType &u, ContactState &state, const Progress &progress = {});

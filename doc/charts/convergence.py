@@ -39,15 +39,20 @@ def message(arrivals, goal):
         return (f"Algorithm 3 reaches {goal} in {ours:.2g} s, and Newton's method "
                 "not at all")
     best = min(newton, key=newton.get)
+    if ours == 0:
+        return f"The first guess is at {goal} already"
     ratio = newton[best] / ours
+    # The other one may have been left out, where it would take too long.
+    which = ("the best of Newton's methods" if len(newton) > 1
+             else "the only one of Newton's methods that was run")
     if 0.95 < ratio < 1.05:
-        return (f"Algorithm 3 reaches {goal} as soon as the best of Newton's "
-                f"methods, {best}")
+        return (f"Algorithm 3 reaches {goal} as soon as {which}, "
+                f"{best}")
     if ratio > 1:
-        return (f"Algorithm 3 reaches {goal} {times(ratio)} times sooner than the "
-                f"best of Newton's methods, {best}")
-    return (f"Algorithm 3 reaches {goal} {times(1 / ratio)} times later than the "
-            f"best of Newton's methods, {best}")
+        return (f"Algorithm 3 reaches {goal} {times(ratio)} times sooner than "
+                f"{which}, {best}")
+    return (f"Algorithm 3 reaches {goal} {times(1 / ratio)} times later than "
+            f"{which}, {best}")
 
 
 def draw(data, output, name, subject):

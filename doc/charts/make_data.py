@@ -287,6 +287,8 @@ class Measurements:
                 break
             with open(table, newline="") as file:
                 for row in csv.DictReader(file):
+                    if None in row.values():
+                        break  # it was stopped while it wrote this
                     key = size if given else next(
                         key for key, level in case.sizes.items()
                         if level == int(row["level"]))

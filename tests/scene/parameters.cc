@@ -148,6 +148,14 @@ main()
   check("override without section", good, {"Cycle=V"});
   check("override without match", good, {"Solver/Smoothing steps=0"});
   check("negative tolerance", good, {"Solver/Inner tolerance=-1"});
+  check(
+    "stop without Algorithm 3",
+    good,
+    {"Solver/Inner tolerance=discretisation", "Solver/Algorithm=fixed point"});
+  check("stop without estimate",
+        good,
+        {"Solver/Inner tolerance=discretisation",
+         "Refinement/Estimate error=false"});
   check("levels", good, {"Refinement/Levels=1000"});
   check("E = 0", "\nsubsection Material\n  set Young's modulus = 0\nend\n");
   check("nu = 0.5", good, {"Material/Poisson ratio=0.5"});

@@ -145,6 +145,9 @@ namespace
         [](SolverSettings &s) { s.algorithm = Algorithm::fixed_point; });
     add("Uzawa's method in the local problems",
         [](SolverSettings &s) { s.local_solver = LocalSolver::uzawa; });
+    add("algebraic corrections", [](SolverSettings &s) {
+      s.coarse_correction = CoarseCorrection::algebraic;
+    });
     add("W-cycles", [](SolverSettings &s) { s.cycle = Cycle::W; });
     add("no recombination", [](SolverSettings &s) { s.recombined_steps = 0; });
     add("no omega''", [](SolverSettings &s) {

@@ -64,7 +64,7 @@ namespace
                                                               *d.contact,
                                                               nest.displacement,
                                                               nest.tractions);
-        stop.add_estimate(estimate, n_dofs);
+        stop.add_estimate(estimate.total, n_dofs);
         share = std::max(share, error / estimate.total);
         if (nest.level > 0)
           {

@@ -201,6 +201,8 @@ int
 main(int argc, char *argv[])
 {
   Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
+    std::cout.setstate(std::ios::failbit);
   test_stalling();
   test_mixing();
   test_long_cells(FrictionLaw::coulomb);

@@ -239,6 +239,7 @@ namespace Benchmark
       }
     SolverSettings settings  = nest.parameters.solver;
     settings.inner_tolerance = 1e-13;
+    settings.safeguards      = false;
     settings.maximum_cycles  = 60;
     const LevelHierarchy<dim> hierarchy(
       nest.discretization->dof_handler, problem.constraints, problem.matrix);

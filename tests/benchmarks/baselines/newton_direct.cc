@@ -236,7 +236,7 @@ namespace Benchmark
           watch([&]() { return displacement(iterate.x); });
         if (!std::isfinite(iterate.violation))
           return false;
-        if (frozen == 0 && iterate.violation <= 1e-11 * iterate.largest_force)
+        if (frozen == 0 && iterate.violation <= 1e-9 * iterate.largest_force)
           return true;
 
         if (frozen > 0 &&
