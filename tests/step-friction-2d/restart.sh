@@ -5,7 +5,8 @@
 # Usage: restart.sh PROGRAM SCENE LAST_LEVEL BOUND N [MPIEXEC NUMPROC_FLAG]
 #
 # BOUND: by how much the number of cycles on a level may differ. N: number of
-# processes; without MPIEXEC, or for N = 1, the program is called directly.
+# processes; without MPIEXEC, or for N = 1, the program is called directly. In the
+# environment OVERRIDE may have an entry that is to be different in the scene.
 program=$1
 scene=$2
 last=$3
@@ -58,7 +59,8 @@ run()
   directory=$2
   shift 2
   set -- "$program" "$scene" "Output/Directory=$directory" \
-    Output/Checkpoint=true Output/Format=hdf5 Output/Times=false "$@"
+    Output/Checkpoint=true Output/Format=hdf5 Output/Times=false \
+    ${OVERRIDE:+"$OVERRIDE"} "$@"
   [ "$processes" -gt 1 ] && set -- "$mpiexec" "$numproc_flag" "$processes" "$@"
   "$@" >stdout 2>stderr
   status=$?
