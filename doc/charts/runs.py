@@ -1,5 +1,5 @@
 """What is measured for the charts, and how large. Sizes are chosen such that all
-of it takes about a quarter of an hour; the quick variant takes a minute and
+of it takes about half an hour; the quick variant takes a minute and
 shows no more than that everything works.
 
 Everything that belongs to a chart is in one place here: the name of the chart,
