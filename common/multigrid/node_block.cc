@@ -1,6 +1,9 @@
 #include <common/multigrid/node_block.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
 
 namespace Friction
 {
@@ -11,7 +14,25 @@ namespace Friction
                  NodeBlock<dim>       *null_space)
   {
     using Matrix = Eigen::Matrix<double, dim, dim>;
-    const Eigen::Map<const Matrix>              matrix(A.data());
+    const Eigen::Map<const Matrix> matrix(A.data());
+    NodeBlock<dim>                 result;
+
+    // Hardly any block is singular, or nearly so. The smallest eigenvalue is at
+    // least the determinant over the product of bounds of the others.
+    const double trace = matrix.trace();
+    double       bound = matrix.determinant();
+    for (int d = 1; d < dim; ++d)
+      bound /= trace;
+    if (trace > 0 && bound > std::max(cut, 1e-4 * trace))
+      {
+        const Matrix inverse = matrix.inverse();
+        Eigen::Map<Matrix>(result.data()) =
+          .5 * (inverse + inverse.transpose());
+        if (null_space != nullptr)
+          Eigen::Map<Matrix>(null_space->data()) = Matrix::Zero();
+        return result;
+      }
+
     const Eigen::SelfAdjointEigenSolver<Matrix> eigen(matrix);
 
     Matrix inverse = Matrix::Zero(), null = Matrix::Zero();
@@ -24,7 +45,6 @@ namespace Friction
           null += v * v.transpose();
       }
 
-    NodeBlock<dim> result;
     Eigen::Map<Matrix>(result.data()) = inverse;
     if (null_space != nullptr)
       Eigen::Map<Matrix>(null_space->data()) = null;
