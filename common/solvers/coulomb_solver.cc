@@ -97,9 +97,10 @@ namespace Friction
   template <int dim>
   void
   CoulombSolver<dim>::certify(SolverReport       &report,
-                              const VectorType   &u,
+                              VectorType         &u,
                               const ContactState &state) const
   {
+    iteration.leading_smoother().ghosts().update(u.begin(), dim);
     const bool coulomb =
       problem.has_friction() && problem.friction_law == FrictionLaw::coulomb;
     report.residual.reinit(u);

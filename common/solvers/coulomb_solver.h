@@ -123,10 +123,10 @@ namespace Friction
     /**
      * Fills in what the report says of the solution itself, as opposed to how
      * it was found: residual, energy and certificate.
-     * @param u  with valid ghosts.
+     * @param u  has its ghosts brought up to date. Collective.
      */
     void certify(SolverReport       &report,
-                 const VectorType   &u,
+                 VectorType         &u,
                  const ContactState &state) const;
 
     const MonotoneMultigrid<dim> &

@@ -77,10 +77,10 @@ namespace Friction
           present_damping, std::max(present_damping / 2., smallest_damping));
         steps.clear();
         changes.clear();
-        last_point.clear();
+        has_last = false;
       }
 
-    if (!last_point.empty())
+    if (has_last)
       {
         steps.push_front(difference(point, last_point));
         changes.push_front(difference(residual, last_residual));
@@ -90,6 +90,7 @@ namespace Friction
             changes.pop_back();
           }
       }
+    has_last      = true;
     last_point    = point;
     last_residual = residual;
 

@@ -60,7 +60,9 @@ namespace Friction
     double             present_damping;
 
     // Differences of consecutive points and of their residuals, and the last
-    // ones of both.
+    // ones of both, if there are any. (Not to be seen from their sizes: a
+    // process without contact nodes has empty ones.)
+    bool                            has_last = false;
     std::deque<std::vector<double>> steps, changes;
     std::vector<double>             last_point, last_residual;
 

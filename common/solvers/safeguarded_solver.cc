@@ -97,20 +97,25 @@ namespace Friction
   SolverReport
   SafeguardedSolver<dim>::attempt(const std::string  &name,
                                   CoulombSolver<dim> &solver,
-                                  Iterate            &iterate,
+                                  VectorType         &u,
+                                  ContactState       &state,
                                   SolverReport       &all,
                                   const Progress     &progress) const
   {
-    const Iterate start  = iterate;
-    SolverReport  report = solver.solve(iterate.u, iterate.state, progress);
+    const VectorType   start       = u;
+    const ContactState start_state = state;
+    SolverReport       report      = solver.solve(u, state, progress);
     all.attempts.push_back({name,
                             static_cast<unsigned int>(report.cycles.size()),
                             report.converged,
                             report.certificate.largest()});
     all.cycles.insert(
       all.cycles.end(), report.cycles.begin(), report.cycles.end());
-    if (!is_finite(iterate.u, iterate.state))
-      iterate = start;
+    if (!is_finite(u, state))
+      {
+        u     = start;
+        state = start_state;
+      }
     return report;
   }
 
@@ -128,11 +133,11 @@ namespace Friction
     const PhaseCosts before = phase_costs();
     const bool       coulomb =
       problem.has_friction() && problem.friction_law == FrictionLaw::coulomb;
-    const Iterate initial = {u, state};
-    Iterate       iterate = initial;
-    SolverReport  all;
-    SolverReport  report =
-      attempt(name_of(problem, settings), first, iterate, all, progress);
+    const VectorType   initial       = u;
+    const ContactState initial_state = state;
+    SolverReport       all;
+    SolverReport       report =
+      attempt(name_of(problem, settings), first, u, state, all, progress);
 
     if (!report.converged)
       {
@@ -153,7 +158,8 @@ namespace Friction
             CoulombSolver<dim> solver(hierarchy, problem, cautious);
             report = attempt(name_of(problem, settings) + " with short steps",
                              solver,
-                             iterate,
+                             u,
+                             state,
                              all,
                              progress);
             slow_corrections = !phases_change(report);
@@ -167,31 +173,36 @@ namespace Friction
             report = attempt(name_of(problem, settings) +
                                " with algebraic corrections",
                              solver,
-                             iterate,
+                             u,
+                             state,
                              all,
                              progress);
           }
       }
     if (!report.converged && coulomb)
       report = mixed_algorithm_2(
-        problem.effective_coefficient(), iterate, all, progress);
+        problem.effective_coefficient(), u, state, all, progress);
+    // The last two start anew, and what they have got to is of no use if they
+    // do not arrive.
+    const auto start_anew = [&](const auto &method) {
+      VectorType   other       = initial;
+      ContactState other_state = initial_state;
+      report                   = method(other, other_state);
+      if (report.converged)
+        {
+          u     = other;
+          state = other_state;
+        }
+    };
     if (!report.converged && coulomb)
-      {
-        Iterate careful = initial;
-        report          = careful_algorithm_2(careful, all, progress);
-        if (report.converged)
-          iterate = careful;
-      }
+      start_anew([&](VectorType &v, ContactState &s) {
+        return careful_algorithm_2(v, s, all, progress);
+      });
     if (!report.converged && coulomb)
-      {
-        Iterate continued = initial;
-        report            = continuation(continued, all, progress);
-        if (report.converged)
-          iterate = continued;
-      }
+      start_anew([&](VectorType &v, ContactState &s) {
+        return continuation(v, s, all, progress);
+      });
 
-    u     = iterate.u;
-    state = iterate.state;
     if (all.attempts.size() > 1)
       {
         // What is reported of a failure is what is returned, and not the end of
@@ -211,7 +222,8 @@ namespace Friction
   template <int dim>
   SolverReport
   SafeguardedSolver<dim>::mixed_algorithm_2(const double    coefficient,
-                                            Iterate        &iterate,
+                                            VectorType     &u,
+                                            ContactState   &state,
                                             SolverReport   &all,
                                             const Progress &progress) const
   {
@@ -232,14 +244,14 @@ namespace Friction
     SolverReport      report;
     {
       CoulombSolver<dim> solver(hierarchy, with_coefficient, mixed);
-      report = attempt(name, solver, iterate, all, progress);
+      report = attempt(name, solver, u, state, all, progress);
     }
     if (!report.inner_converged)
       {
         mixed.coarse_correction = CoarseCorrection::algebraic;
         CoulombSolver<dim> solver(hierarchy, with_coefficient, mixed);
         report = attempt(
-          name + ", algebraic corrections", solver, iterate, all, progress);
+          name + ", algebraic corrections", solver, u, state, all, progress);
       }
     return report;
   }
@@ -253,7 +265,8 @@ namespace Friction
   // attempt.
   template <int dim>
   SolverReport
-  SafeguardedSolver<dim>::careful_algorithm_2(Iterate        &iterate,
+  SafeguardedSolver<dim>::careful_algorithm_2(VectorType     &u,
+                                              ContactState   &state,
                                               SolverReport   &all,
                                               const Progress &progress) const
   {
@@ -270,14 +283,14 @@ namespace Friction
     SolverReport report, steps;
     {
       CoulombSolver<dim> solver(hierarchy, problem, careful);
-      report = attempt(name, solver, iterate, steps, progress);
+      report = attempt(name, solver, u, state, steps, progress);
     }
     if (report.inner_converged)
       {
         careful.outer_tolerance        = settings.outer_tolerance;
         careful.mixed_outer_iterations = 10;
         CoulombSolver<dim> solver(hierarchy, problem, careful);
-        report = attempt(name, solver, iterate, steps, progress);
+        report = attempt(name, solver, u, state, steps, progress);
       }
     all.attempts.push_back({name,
                             static_cast<unsigned int>(steps.cycles.size()),
@@ -294,7 +307,8 @@ namespace Friction
   // square root of the last factor where it does not. All of it is one attempt.
   template <int dim>
   SolverReport
-  SafeguardedSolver<dim>::continuation(Iterate        &iterate,
+  SafeguardedSolver<dim>::continuation(VectorType     &u,
+                                       ContactState   &state,
                                        SolverReport   &all,
                                        const Progress &progress) const
   {
@@ -309,12 +323,15 @@ namespace Friction
         const double coefficient = solved == 0
           ? std::min(easy, target / 2)
           : std::min(solved * factor, target);
-        Iterate      next        = iterate;
-        report = mixed_algorithm_2(coefficient, next, steps, progress);
+        VectorType   next        = u;
+        ContactState next_state  = state;
+        report =
+          mixed_algorithm_2(coefficient, next, next_state, steps, progress);
         if (report.converged)
           {
-            solved  = coefficient;
-            iterate = next;
+            solved = coefficient;
+            u      = next;
+            state  = next_state;
           }
         else
           {

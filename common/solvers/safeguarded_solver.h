@@ -63,29 +63,26 @@ namespace Friction
     const SolverSettings       settings;
     CoulombSolver<dim>         first;
 
-    // Where an attempt has got to.
-    struct Iterate
-    {
-      VectorType   u;
-      ContactState state;
-    };
-
     SolverReport attempt(const std::string  &name,
                          CoulombSolver<dim> &solver,
-                         Iterate            &iterate,
+                         VectorType         &u,
+                         ContactState       &state,
                          SolverReport       &all,
                          const Progress     &progress) const;
 
     SolverReport mixed_algorithm_2(const double    coefficient,
-                                   Iterate        &iterate,
+                                   VectorType     &u,
+                                   ContactState   &state,
                                    SolverReport   &all,
                                    const Progress &progress) const;
 
-    SolverReport careful_algorithm_2(Iterate        &iterate,
+    SolverReport careful_algorithm_2(VectorType     &u,
+                                     ContactState   &state,
                                      SolverReport   &all,
                                      const Progress &progress) const;
 
-    SolverReport continuation(Iterate        &iterate,
+    SolverReport continuation(VectorType     &u,
+                              ContactState   &state,
                               SolverReport   &all,
                               const Progress &progress) const;
   };

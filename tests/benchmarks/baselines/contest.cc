@@ -245,9 +245,6 @@ namespace Benchmark
       nest.discretization->dof_handler, problem.constraints, problem.matrix);
     CoulombSolver<dim> solver(hierarchy, problem, settings);
     const SolverReport report = solver.solve(u, state);
-    std::cerr << "  " << report.cycles.size() << " cycles, last increment "
-              << (report.cycles.empty() ? 0. : report.cycles.back().increment)
-              << ", certificate " << report.certificate.largest() << std::endl;
     AssertThrow(report.certificate.largest() <= 1e-9,
                 ExcMessage("The reference solution is not one: " +
                            report.certificate.describe()));
