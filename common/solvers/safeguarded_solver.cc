@@ -76,6 +76,23 @@ namespace Friction
       result.truncation        = TruncationVariant::phases;
       return result;
     }
+
+
+
+    // Notes what has been tried: its outcome, and all the cycles that it took,
+    // which may be those of several solutions.
+    void
+    add_attempt(SolverReport                 &all,
+                const std::string            &name,
+                const SolverReport           &outcome,
+                const std::vector<CycleInfo> &cycles)
+    {
+      all.attempts.push_back({name,
+                              static_cast<unsigned int>(cycles.size()),
+                              outcome.converged,
+                              outcome.certificate.largest()});
+      all.cycles.insert(all.cycles.end(), cycles.begin(), cycles.end());
+    }
   } // namespace
 
 
@@ -105,12 +122,7 @@ namespace Friction
     const VectorType   start       = u;
     const ContactState start_state = state;
     SolverReport       report      = solver.solve(u, state, progress);
-    all.attempts.push_back({name,
-                            static_cast<unsigned int>(report.cycles.size()),
-                            report.converged,
-                            report.certificate.largest()});
-    all.cycles.insert(
-      all.cycles.end(), report.cycles.begin(), report.cycles.end());
+    add_attempt(all, name, report, report.cycles);
     if (!is_finite(u, state))
       {
         u     = start;
@@ -209,10 +221,9 @@ namespace Friction
         // an attempt that has been thrown away.
         if (!report.converged)
           first.certify(report, u, state);
-        report.converged = all.attempts.back().converged;
-        report.cycles    = all.cycles;
-        report.attempts  = all.attempts;
-        report.costs     = phase_costs() - before;
+        report.cycles   = all.cycles;
+        report.attempts = all.attempts;
+        report.costs    = phase_costs() - before;
       }
     return report;
   }
@@ -292,12 +303,7 @@ namespace Friction
         CoulombSolver<dim> solver(hierarchy, problem, careful);
         report = attempt(name, solver, u, state, steps, progress);
       }
-    all.attempts.push_back({name,
-                            static_cast<unsigned int>(steps.cycles.size()),
-                            report.converged,
-                            report.certificate.largest()});
-    all.cycles.insert(
-      all.cycles.end(), steps.cycles.begin(), steps.cycles.end());
+    add_attempt(all, name, report, steps.cycles);
     return report;
   }
 
@@ -345,12 +351,7 @@ namespace Friction
     std::ostringstream name;
     name << "continuation from less friction, up to the coefficient " << solved
          << ",";
-    all.attempts.push_back({name.str(),
-                            static_cast<unsigned int>(steps.cycles.size()),
-                            report.converged,
-                            report.certificate.largest()});
-    all.cycles.insert(
-      all.cycles.end(), steps.cycles.begin(), steps.cycles.end());
+    add_attempt(all, name.str(), report, steps.cycles);
     return report;
   }
 
