@@ -13,6 +13,7 @@
 #include <deal.II/base/timer.h>
 #include <deal.II/base/utilities.h>
 
+#include <tests/benchmarks/bonded.h>
 #include <tests/support/nested_iteration.h>
 
 #include <algorithm>
@@ -124,26 +125,6 @@ namespace Benchmark
         (sizeof(std::size_t) + dim * dim * sizeof(double) +
          3 * dim * sizeof(double));
     return bytes / seconds;
-  }
-
-
-
-  // Makes the displacements of all nodes in contact prescribed ones.
-  template <int dim>
-  NodalConstraints<dim>
-  bond(const DiscreteProblem<dim> &problem,
-       const VectorType           &u,
-       const ContactState         &state)
-  {
-    NodalConstraints<dim> bonded = problem.constraints;
-    for (unsigned int p = 0; p < problem.contact.size(); ++p)
-      if (state.in_contact(p))
-        for (unsigned int d = 0; d < dim; ++d)
-          bonded.prescribe(problem.contact[p].node,
-                           d,
-                           u.local_element(dim * problem.contact[p].node + d));
-    bonded.update_ghosts();
-    return bonded;
   }
 
 

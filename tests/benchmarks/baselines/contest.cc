@@ -5,6 +5,7 @@
 #include <tests/benchmarks/baselines/linear_cg.h>
 #include <tests/benchmarks/baselines/newton_direct.h>
 #include <tests/benchmarks/baselines/newton_gmres.h>
+#include <tests/benchmarks/bonded.h>
 
 #include <chrono>
 #include <cmath>
@@ -14,26 +15,6 @@ namespace Benchmark
 {
   namespace
   {
-    template <int dim>
-    NodalConstraints<dim>
-    bond(const DiscreteProblem<dim> &problem,
-         const VectorType           &u,
-         const ContactState         &state)
-    {
-      NodalConstraints<dim> bonded = problem.constraints;
-      for (unsigned int p = 0; p < problem.contact.size(); ++p)
-        if (state.in_contact(p))
-          for (unsigned int d = 0; d < dim; ++d)
-            bonded.prescribe(
-              problem.contact[p].node,
-              d,
-              u.local_element(dim * problem.contact[p].node + d));
-      bonded.update_ghosts();
-      return bonded;
-    }
-
-
-
     bool
     is_linear(const std::string &name)
     {
