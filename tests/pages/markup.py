@@ -29,6 +29,7 @@ class Page:
         text = self.path.read_text(encoding="utf-8") if text is None else text
         self.code, self.links, self.pictures = [], [], []
         self.anchors, self.blocks, self.problems = set(), [], []
+        self.headings = []  # their lines
         self._slugs = {}
         if self.path.suffix == ".dox":
             text = self._take_doxygen_blocks(text)
@@ -151,10 +152,10 @@ class Page:
     def _read_headings(self, text):
         # Slugs need the words that have been hidden.
         original = self._unhidden
-        for match in re.finditer(r"^#{1,6} +(.*?) *#* *$", original, re.M):
-            self._add_slug(match.group(1))
-        for match in re.finditer(r"<h\d[^>]*>(.*?)</h\d>", original, re.S):
-            self._add_slug(match.group(1))
+        for pattern in r"^#{1,6} +(.*?) *#* *$", r"<h\d[^>]*>(.*?)</h\d>":
+            for match in re.finditer(pattern, original, re.M):
+                self.headings.append(self._line(original, match.start()))
+                self._add_slug(match.group(1))
         for match in re.finditer(r"\b(?:name|id)=\"([^\"]+)\"", text):
             self.anchors.add(match.group(1))
 
