@@ -96,7 +96,7 @@ def same(shown, printed, columns):
 def close(one, other, absolute, relative):
     """Of numbers with a fraction; others are words, equal or not."""
     number = r"-?\d*\.\d+(e[+-]\d+)?|-?\d+e[+-]\d+"
-    one, other = one.strip(",;:()"), other.strip(",;:()")
+    one, other = one.strip(",;:()").rstrip("."), other.strip(",;:()").rstrip(".")
     if not re.fullmatch(number, one) or not re.fullmatch(number, other):
         return False
     one, other = float(one), float(other)
