@@ -51,7 +51,7 @@ def draw_obstacle(axes, depth=1.0):
 
 def body(run, output):
     """The deformed half disc, and its contact zone enlarged."""
-    data = vtu.read(run.directory / "body-08.0000.vtu")
+    data = vtu.read(run.directory / f"body-{min(8, run.last):02d}.0000.vtu")
     norm = PowerNorm(0.5, 0, nodal_stress(data).max())
     figure, (whole, zoom) = plt.subplots(
         1, 2, figsize=(9, 2.9), gridspec_kw={"width_ratios": [1.08, 1]})
@@ -185,7 +185,7 @@ def readme(run, output):
     a, p = width(force), peak(force)
     limits = (-0.13, 0.13)
     window = (limits, (-1.006, -0.8928))
-    data = vtu.read(run.directory / "body-08.0000.vtu")
+    data = vtu.read(run.directory / f"body-{min(8, run.last):02d}.0000.vtu")
     norm = PowerNorm(0.8, 0, nodal_stress(data).max())
 
     figure = plt.figure(figsize=(7.2, 4.85), dpi=130)

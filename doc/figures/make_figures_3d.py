@@ -66,7 +66,8 @@ def outline(rings):
 
 def overview(run, output):
     """The cylinder on its rods, with its mesh, obliquely from below."""
-    faces, stress = surface(vtu.read(run.directory / "body-04.0000.vtu"))
+    faces, stress = surface(vtu.read(
+        run.directory / f"body-{min(4, run.last):02d}.0000.vtu"))
     view = View(towards=(-0.55, 0.42, 0.9), up=(0, 1, 0))
     norm = PowerNorm(0.5, 0, 0.2, clip=True)
 
@@ -365,17 +366,21 @@ def truncation(runs, output, most):
 def main():
     runs, output = Path(sys.argv[1]), Path(sys.argv[2])
     large = CylinderRun(runs / "large")
-    overview(CylinderRun(runs / "cylinder"), output)
-    tangential_stress(large, output)
-    phases(large, CylinderRun(runs / "one-cell"), output)
-    crossing_rods(Run(runs / "crossing-rods"), output)
-    fixed_point(CylinderRun(runs / "large-fixed-point"), output)
-    cycles({"O-grid": (large, BLUE, "o"),
+    pictures = {
+        "overview": lambda: overview(CylinderRun(runs / "cylinder"), output),
+        "tangential-stress": lambda: tangential_stress(large, output),
+        "phases": lambda: phases(large, CylinderRun(runs / "one-cell"), output),
+        "crossing-rods": lambda: crossing_rods(Run(runs / "crossing-rods"), output),
+        "fixed-point": lambda: fixed_point(
+            CylinderRun(runs / "large-fixed-point"), output),
+        "cycles": lambda: cycles({
+            "O-grid": (large, BLUE, "o"),
             "one cell": (CylinderRun(runs / "one-cell"), RED, "v"),
-            "one cell, uniform": (CylinderRun(runs / "uniform-one-cell"), PINK,
-                                  "^"),
-            "O-grid, uniform": (CylinderRun(runs / "uniform"), SKY, "D")}, output)
-    truncation(runs, output, most=100)
+            "one cell, uniform": (CylinderRun(runs / "uniform-one-cell"), PINK, "^"),
+            "O-grid, uniform": (CylinderRun(runs / "uniform"), SKY, "D")}, output),
+        "truncation": lambda: truncation(runs, output, most=100)}
+    for name in sys.argv[3:] or pictures:
+        pictures[name]()
 
 
 if __name__ == "__main__":
