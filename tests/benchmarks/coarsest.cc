@@ -58,10 +58,10 @@ namespace Benchmark
         timer.restart();
         CoarsestSolver<dim> coarsest(*d.hierarchy, matrices, method);
         if (!is_direct)
-          coarsest.solve(c, rhs); // makes the hierarchy
+          coarsest.solve(c.begin(), rhs.begin()); // makes the hierarchy
         const double first = timer.wall_time();
         timer.restart();
-        coarsest.solve(c, rhs);
+        coarsest.solve(c.begin(), rhs.begin());
         const double again = timer.wall_time();
         std::printf(" %7.3f %7.4f", is_direct ? first : first - again, again);
         if (!is_direct)
