@@ -23,7 +23,7 @@ STEPS = {"step-friction-2d", "step-friction-3d"}
 LONG_STUDIES = {
     "charts": "charts/quick",
     "charts-draw": "charts/quick",
-    "benchmark": "benchmarks/quick",
+    "benchmark": "benchmark/quick",
     "figures": "figures/quick",
     "figures-2d": "figures/quick",
     "figures-3d": "figures/quick",
