@@ -12,12 +12,18 @@ import sites
 
 
 class Names:
-    """What can be linked to by its name. classes: of the library. dealii: whether
-    links to deal.II's own pages are possible."""
+    """What becomes a link by its name alone. classes: of the library. steps and
+    files: whether they do. dealii: whether deal.II has pages."""
 
-    def __init__(self, classes, dealii):
+    def __init__(self, classes, dealii, steps=True, files=True):
         self.classes = classes
         self.dealii = dealii
+        self.steps = steps
+        self.files = files
+
+
+# Within the text of a link nothing is a link.
+NO_NAMES = Names(frozenset(), dealii=False, steps=False, files=False)
 
 
 # One alternative per kind of text; what matches none stays as it is.
@@ -56,7 +62,7 @@ def code(text, source, names):
     content = html.unescape(" ".join(content.split()))
     if content in names.classes:
         return link_to_class(content)
-    if re.fullmatch(r"[\w./-]+\.\w+|common", content):
+    if names.files and re.fullmatch(r"[\w./-]+\.\w+|common", content):
         for path in (sites.resolve(content, source), content):
             if (sites.ROOT / path).exists() and not path.startswith(".."):
                 return link(path, f"<code>{html.escape(content)}</code>", source)
@@ -71,7 +77,7 @@ def link(path, text, source, heading=""):
 
 
 def step(name, names):
-    if name in sites.STEPS:
+    if names.steps and name in sites.STEPS:
         return f'<a href="{sites.page_of_step(name)}.html">{name}</a>'
     if names.dealii:
         return f'@ref {name.replace("-", "_")} "{name}"'
@@ -103,11 +109,13 @@ def inline(text, source, names):
             return picture(attributes["src"], attributes.get("alt", ""), source)
         if kind == "link":
             target, _, heading = match["link_target"].partition("#")
-            content = inline(match["link_text"], source, names)
-            content = re.sub(r"</?a\b[^>]*>", "", content)
+            content = inline(match["link_text"], source, NO_NAMES)
             if re.match(r"\w+:", match["link_target"]):
                 return f'<a href="{match["link_target"]}">{content}</a>'
             path = sites.resolve(target, source) if target else source
+            name = match["link_text"].strip("`")
+            if sites.is_library(path) and name in names.classes:
+                return link_to_class(name)
             return link(path, content, source, heading)
         if kind == "step":
             return step(match[0], names)
