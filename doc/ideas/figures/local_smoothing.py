@@ -99,9 +99,9 @@ class Mesh:
                     raise Failure("A pair of nodes is not on any level.")
 
 
-def read_mesh(directory):
-    """The last mesh of a run whose domain is a square of one coarse cell."""
-    data = vtu.read(sorted(directory.glob("body-*.vtu"))[-1])
+def read_mesh(directory, number):
+    """One of the meshes of a run whose domain is a square of one coarse cell."""
+    data = vtu.read(directory / f"body-{number:02}.0000.vtu")
     points = data["points"][:, :2][data["cells"]]
     lower, size = points.min(axis=1), np.ptp(points, axis=1)[:, :1]
     level = np.rint(np.log2(points.max() / size)).astype(int)
@@ -138,7 +138,7 @@ def draw(workshop):
     mesh = read_mesh(workshop.run(
         2, "raous", "local-smoothing", "Refinement/Strategy=adaptive",
         f"Refinement/Levels={levels}", "Refinement/Marking=0.5",
-        "Output/Fields=true"))
+        "Output/Fields=true"), levels)
     kinds = mesh.kinds()
     figure, axes = plt.subplots(2, 3, figsize=(6.3, 5.0))
     figure.subplots_adjust(left=0.01, right=0.99, top=0.95, bottom=0.11,
