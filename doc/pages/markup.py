@@ -36,6 +36,8 @@ INLINE = re.compile(r"""
   | (?P<picture> !\[(?P<picture_text>[^\]]*)\]\((?P<picture_target>[^)\s]+)\)
                | <img\s[^>]*?> )
   | (?P<link> \[(?P<link_text>(?:[^\[\]`]|`[^`]*`)+)\]\((?P<link_target>[^)\s]+)\) )
+  | (?P<bold> \*\*(?=\S)(?P<bold_text>.+?)(?<=\S)\*\*(?!\*) )
+  | (?P<emphasis> (?<![\w*])\*(?=[^\s*])(?P<emphasis_text>[^*]*?[^\s*])\*(?![\w*]) )
   | (?P<step> (?<![\w/-])step-(?:\d+|friction-[23]d)(?![\w/-]|\.\w) )
 """, re.VERBOSE | re.DOTALL)
 
@@ -88,10 +90,9 @@ def inline(text, source, names):
     """Text without headings and blocks of code."""
 
     def replace(match):
-        kind = match.lastgroup
-        # lastgroup is the innermost name; that of the alternative is wanted.
         kind = next(name for name in ("comment", "code", "verbatim", "display",
-                                      "formula", "picture", "link", "step")
+                                      "formula", "picture", "link", "bold", "emphasis",
+                                      "step")
                     if match[name] is not None)
         if kind == "comment":
             return ""
@@ -117,6 +118,10 @@ def inline(text, source, names):
             if sites.is_library(path) and name in names.classes:
                 return link_to_class(name)
             return link(path, content, source, heading)
+        if kind in ("bold", "emphasis"):
+            tag = "b" if kind == "bold" else "em"
+            content = inline(match[f"{kind}_text"], source, names)
+            return f"<{tag}>{content}</{tag}>"
         if kind == "step":
             return step(match[0], names)
         return match[0]
@@ -145,7 +150,7 @@ def blocks(text, begin, end):
 def fenced(lines):
     """A fenced block, as one of Doxygen's, which knows fewer languages."""
     language = {"cpp": "{.cpp}", "c++": "{.cpp}"}.get(
-        lines[0].strip().strip("`"), "{.txt}")
+        lines[0].strip().strip("`"), "{.unparsed}")
     indent = lines[0][:len(lines[0]) - len(lines[0].lstrip())]
     return [f"{indent}@code{language}", *lines[1:-1], f"{indent}@endcode"]
 
@@ -195,7 +200,11 @@ def documented(text, source, names):
     result = []
     for is_code, lines in blocks(text, "@code", "@endcode"):
         chunk = "\n".join(lines)
-        result.append(chunk if is_code else inline(chunk, source, names))
+        if is_code:
+            result.append(re.sub(r"^@code\{\.(txt|sh)\}", "@code{.unparsed}",
+                                 chunk))
+        else:
+            result.append(inline(chunk, source, names))
     return "\n".join(result)
 
 
