@@ -68,7 +68,9 @@ def code(text, source, names):
         for path in (sites.resolve(content, source), content):
             if (sites.ROOT / path).exists() and not path.startswith(".."):
                 return link(path, f"<code>{html.escape(content)}</code>", source)
-    return f"@htmlonly<code>{html.escape(content)}</code>@endhtmlonly"
+    # Doxygen takes a quote after a single backtick for the end of a quotation.
+    ticks = "``" if "'" in content else "`"
+    return f"{ticks}{content}{ticks}"
 
 
 def link(path, text, source, heading=""):
