@@ -181,7 +181,9 @@ def markdown(text, source, names):
         else:
             chunk = inline_with_headings("\n".join(lines), source, names, heading)
             result.append(chunk)
-    page = "\n".join(result)
+    # A line that begins with a year and a dot is no item of a list.
+    page = re.sub(r"^( *\d{3,})\. ", r"\1\\. ", "\n".join(result),
+                  flags=re.MULTILINE)
     if headings < 4:
         page = page.replace("@tableofcontents\n", "", 1)
     return page
