@@ -482,25 +482,29 @@ namespace StepFriction2d
   //
   // <i>Where is the friction cone?</i> In the first part, and nowhere else.
   // When its turn comes, a contact node gets the displacement that minimises
-  // the energy with all other nodes held, (6.15). The local problem first tries
-  // to leave the obstacle; if it cannot, it puts $u_n=g$ and compares the
-  // tangential force that would hold the node at $u_T=0$ with $\mathcal
-  // F\tau(p)$. Below the bound the node sticks. Otherwise it slides, with the
-  // force equal to the bound, (6.18). So right after its turn a node satisfies
-  // its law, with this $\tau(p)$, exactly, and violates it again as soon as a
-  // neighbour moves. With Algorithm 3 the bound itself, $\tau(p)$, is taken
-  // from the intermediate iterate just before the node is relaxed, (6.19). With
-  // Algorithm 2 it is fixed, and the whole iteration described here is repeated
-  // with the forces it has found until they agree with those it was given,
-  // (6.11).
+  // the energy with all other nodes held, (6.15); this is
+  // <code>MonotoneSmoother::relax_contact_node()</code>, and at its heart
+  // <code>LocalProblem::solve()</code>. Unless the node can leave the obstacle
+  // it has $u_n=g$, and the tangential force that would hold it at $u_T=0$ is
+  // compared with $\mathcal F\tau(p)$. Below the bound the node sticks.
+  // Otherwise it slides, with the force equal to the bound, (6.18). So right
+  // after its turn a node satisfies its law, with this $\tau(p)$, exactly, and
+  // violates it again as soon as a neighbour moves. With Algorithm 3 the bound
+  // is taken from the intermediate iterate just before the node is relaxed,
+  // (6.19). With Algorithm 2 it is fixed, and the whole iteration is repeated
+  // until the forces it finds agree with those it was given, (6.11).
   //
   // <i>Where is truncation?</i> Between relaxation and coarse correction, at
-  // the smoothed iterate. The phase of a node decides which directions $T_p$
-  // are left to coarse functions: all at an open node, the tangent at a sliding
-  // one, none at a sticking one. On these the energy is smooth, and coarse
-  // levels solve the linear problem with the matrix $TAT$ (in two dimensions
-  // friction adds nothing to it, for $|u_T|$ is piecewise linear).
-  // Interpolation between levels is never truncated. The bounds (6.12) on
+  // the smoothed iterate, in <code>MonotoneMultigrid::correct()</code>. The
+  // phase of a node decides which directions $T_p$ are left to coarse functions
+  // (<code>Linearization::update()</code>): all at an open node, the tangent at
+  // a sliding one, none at a sticking one. On these the energy is smooth, and
+  // coarse levels solve the linear problem with the matrix $TAT$ (in two
+  // dimensions friction adds nothing to it, for $|u_T|$ is piecewise linear).
+  // $T$ is applied to the residual (<code>linearize_residual()</code>) and to
+  // the blocks of $A$ on their way to the levels
+  // (<code>LevelMatrices::update()</code>), and never to the interpolation
+  // between levels. The bounds (6.12) on
   // coarse corrections are used by the <code>monotone</code> variant only; by
   // default a correction may be as large as it likes, and the line search deals
   // with it.
@@ -517,11 +521,12 @@ namespace StepFriction2d
   // - rows of level matrices near nodes whose phase has changed, which after a
   //   few cycles is nowhere, and a solution on the coarsest mesh.
   //
-  // That is linear in the number of unknowns, provided the coarsest mesh is
-  // small and the cycle a V-cycle; W-cycles are not affordable on meshes
-  // refined towards a small zone. How many cycles it takes is another question,
-  // to which we have measurements, see the results, but no theorem. For
-  // Algorithm 3 not even convergence is proved.
+  // Together these are about a dozen passes over the leaf matrix, whatever the
+  // number of unknowns, provided the coarsest mesh is small and the cycle a
+  // V-cycle. A linear problem would save the line search and the updates; the
+  // page <code>doc/benchmark.md</code> compares the two. How many cycles it
+  // takes is another question, to which we have measurements, see the results,
+  // but no theorem. For Algorithm 3 not even convergence is proved.
   //
   // The coefficient of friction of Tresca's law is absorbed in the given
   // bounds, hence the 1 in the problem's last entry.

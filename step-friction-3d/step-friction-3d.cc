@@ -480,11 +480,11 @@ namespace StepFriction3d
   // what the certificate says, are as in step-friction-2d. Let us go through
   // the parts once more and see what becomes of them in three dimensions.
   //
-  // <i>The local problem.</i> At a contact node of the leading relaxation the
-  // energy (6.15) is minimised over the displacement of this node alone. The
-  // normal component is easily disposed of: try without the obstacle first, and
-  // if that penetrates, set $z_n=g$. In both cases there remains a problem in
-  // the tangential plane,
+  // <i>The local problem</i>, which enforces the friction cone
+  // (<code>SlipProblem::solve()</code>). At a contact node of the leading
+  // relaxation the energy (6.15) is minimised over the displacement of this
+  // node alone. Its normal component is $z_n=g$, unless it can leave the
+  // obstacle. In both cases there remains a problem in the tangential plane,
   // @f[
   //   \tfrac12 v^TAv-b^Tv+s|v| \to \min,\qquad s=\mathcal F\tau(p),
   // @f]
@@ -499,16 +499,15 @@ namespace StepFriction3d
   // close bounds to start from; the amount of slip then follows from a
   // quadratic equation without cancellation. The introduction derives both.
   // Four steps of an iteration of third order suffice for all of the problems
-  // in <code>tests/contact/local_problem_3d.cc</code>, and nothing special
-  // happens when the slip is tiny, since the direction does not vanish with it.
-  // That is what the obvious method, Newton's for $v$, suffers from
-  // (Remark 6.6). The method of Uzawa that the thesis uses, <code>Solver/Local
-  // solver = Uzawa</code>, does not mind tiny slips either, but takes a number
-  // of steps that grows with the condition number of $A$.
+  // in <code>tests/contact/local_problem_3d.cc</code>. Tiny slips, on which
+  // Newton's method for $v$ fails (Remark 6.6), are nothing special, since the
+  // direction does not vanish with the slip. Nor are they for the method of
+  // Uzawa that the thesis uses, <code>Solver/Local solver = Uzawa</code>; but
+  // its number of steps grows with the condition number of $A$.
   //
-  // <i>Linearisation and truncation.</i> In two dimensions $|u_T|$ is piecewise
-  // linear, and at a node that slides friction is a constant force. In three it
-  // is the length of a vector, and
+  // <i>Linearisation and truncation</i> (<code>Linearization::update()</code>).
+  // At a node that slides friction was a constant force in two dimensions. Now
+  // $|u_T|$ is the length of a vector, and
   // @f[
   //   \omega''_p=\frac{\mathcal F\tau(p)}{|u_T|}
   //      \Big(I-\frac{u_Tu_T^T}{|u_T|^2}\Big)
@@ -565,10 +564,9 @@ namespace StepFriction3d
   // slip. In two dimensions the energy is <i>quadratic</i> within these bounds,
   // so that lowering the model lowers the energy. In three it is not: where a
   // correction shortens a slip and turns it at once, the model underestimates
-  // the energy, as the introduction shows. Therefore <code>monotone</code>,
-  // which has no line search, has no guarantee in three dimensions, not even
-  // for given $\tau$. It has to rely on the relaxation to repair what went
-  // wrong, and on the certificate to tell whether that worked.
+  // the energy, as the introduction shows. So <code>monotone</code>, which has
+  // no line search, has no guarantee even for given $\tau$. It relies on the
+  // relaxation to repair what went wrong, and on the certificate to tell.
   template <int dim>
   void
   ContactProblem<dim>::solve(const unsigned int level)
@@ -631,9 +629,9 @@ namespace StepFriction3d
     // few, a surface in a body.
     //
     // The levels below are cheaper than in two dimensions: there is less than
-    // one refined cell for seven active ones. The coarsest matrix has more
-    // unknowns, and its factors fill in; but it is factorised anew only when it
-    // has changed.
+    // one refined cell for seven active ones. The coarsest matrix is factorised
+    // anew only when it has changed. All in all a cycle is some ten passes over
+    // the leaf matrix, and updates while directions of slip settle.
     //
     // The call returns with the certificate. Two of its six numbers are about
     // vectors now: the tangential force must be inside a cone with a circular

@@ -15,7 +15,7 @@ from pathlib import Path
 from drawing_of_ideas import Failure, Workshop
 
 HERE = Path(__file__).resolve().parent
-COMMON = ("draw", "drawing_of_ideas")
+COMMON = ("draw", "drawing_of_ideas", "small_block")
 PICTURES = sorted(path.stem.replace("_", "-") for path in HERE.glob("*.py")
                   if path.stem not in COMMON)
 
