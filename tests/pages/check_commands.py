@@ -63,9 +63,10 @@ class Commands:
                 continue
             shown = []
             for other in blocks[i + 1:]:
-                if other.language in ("sh", "bash") or any(
-                        block.line < heading < other.line
-                        for heading in self.page.headings):
+                if other.language in ("sh", "bash") and shell.is_run(other):
+                    break
+                if any(block.line < heading < other.line
+                       for heading in self.page.headings):
                     break
                 if other.language in ("text", ""):
                     shown.append(other)
@@ -117,9 +118,13 @@ class Commands:
             end_is_shown = end_is_shown or comparison.last_shown
             for line, problem in comparison.offences:
                 self.report(line, problem)
-        # A run that finds no solution ends with an error, and a page that tells of
-        # it shows the message.
-        if status != 0 and not (status == 1 and end_is_shown):
+        # A run that finds no solution ends with an error. A page that tells of it
+        # shows the message, or has the comment '<!-- exit status: 1 -->'.
+        wanted = {note[len("exit status:"):].strip() for note in block.notes
+                  if note.startswith("exit status:")}
+        as_wanted = (str(status) in wanted if wanted else
+                     status == 0 or (status == 1 and end_is_shown))
+        if not as_wanted:
             self.report(block.line, f"the command ends with status {status}, and "
                         "prints\n  " + "\n  ".join(output.splitlines()[-20:]))
 

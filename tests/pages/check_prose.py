@@ -97,6 +97,7 @@ class Prose:
         for scene in self.repository.scenes():
             step = scene.split("/")[0]
             if not (build.has_test(f"{step}/{Path(scene).stem}")
+                    or build.has_test(f"pages/scenes/{Path(scene).stem}")
                     or any(scene in command for command in commands)):
                 self.report(scene, 1, "no test and no command of a page runs "
                             "this scene")
@@ -121,8 +122,16 @@ class Prose:
 def commands_of(block):
     """The commands of a block with their lines: a command goes on after '&&', '|'
     and a backslash, but it is looked at piece by piece."""
-    commands, pending, start = [], "", None
+    commands, pending, start, end_of_input = [], "", None, None
     for number, line in enumerate(block.text.split("\n"), block.line):
+        if end_of_input is not None:
+            if line.strip() == end_of_input:
+                end_of_input = None
+            continue
+        here_document = re.search(r"<<-?\s*(['\"]?)(\w+)\1", line)
+        if here_document:
+            end_of_input = here_document.group(2)
+            line = line.replace(here_document.group(0), "")
         if not line.strip() or (not pending and line.strip().startswith("#")):
             continue
         start = number if not pending else start
@@ -130,7 +139,7 @@ def commands_of(block):
         if pending.endswith("\\"):
             pending = pending[:-1]
             continue
-        for piece in re.split(r"\s*(?:&&|\|\|?|;(?!;)|>)\s*(?=[^']*(?:'[^']*'[^']*)*$)",
+        for piece in re.split(r"\s*(?:&&|\|\|?|;(?!;))\s*(?=[^']*(?:'[^']*'[^']*)*$)",
                               pending):
             if piece.strip():
                 commands.append((start, piece.strip()))

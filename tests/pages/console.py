@@ -25,13 +25,14 @@ class Comparison:
         self._compare()
 
     def _compare(self):
-        position, gap, columns, rows, compared = 0, False, [], 0, 0
+        position, gap, rows, compared = 0, False, 0, 0
+        # The page need not show the names of columns.
+        columns = next((line.split() for line in self.printed
+                        if line.split()[0] == "level"), [])
         for number, line in self.shown:
             if line.strip() == GAP:
                 gap = True
                 continue
-            if line.split()[0] == "level":
-                columns = line.split()
             row = is_row(line)
             rows += row
             if row and self.shortened and int(line.split()[0]) > self.last_level:

@@ -41,6 +41,11 @@ class Page:
         self._read_headings(text)
         self._read_links(text)
         self.code.sort(key=lambda fragment: fragment.line)
+        # Folders that commands of the page make, and fill.
+        self.made_folders = {
+            folder.strip("'/") for block in self.blocks for folder in re.findall(
+                r"\bmkdir (?:-p )?(\S+)|Output/Directory=(\S+)", block.text)
+            for folder in folder if folder}
 
     # Blocks are replaced by as many empty lines, so that line numbers stay.
     @staticmethod
@@ -188,8 +193,3 @@ def slug_of(heading):
     heading = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", heading)
     heading = re.sub(r"[^\w\- ]", "", heading.strip().lower())
     return heading.replace(" ", "-")
-
-
-def is_comment(note, word):
-    """Whether a note before a block is '<!-- word: ... -->' or '<!-- word -->'."""
-    return note == word or note.startswith(word + ":")

@@ -102,6 +102,9 @@ class Names:
 
     def _problem_of_path(self, text, page):
         repository, bare = self.repository, text.rstrip("/")
+        if any(bare == made or bare.startswith(made + "/")
+               for made in page.made_folders):
+            return None
         folder = Path(page.path).resolve().parent
         if "*" in text:
             pattern = [str(folder.relative_to(repository.root) / text), text,
@@ -198,7 +201,8 @@ class Names:
 
     def _problem_of_packages(self, words):
         for word in words[1:]:
-            if word.startswith("-") or word in ("update", "install", "&&"):
+            if (word.startswith("-") or word in ("update", "install", "&&")
+                    or word in self.foreign):
                 continue
             if not re.search(r"(?<![\w.-])" + re.escape(word) + r"(?![\w.-])",
                              self.installs):

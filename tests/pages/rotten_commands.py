@@ -33,6 +33,13 @@ CASES = [
     ("rate within 0.02", "", f"{RUN} Refinement/Levels=1",
      [HEAD, ROWS[0], ROWS[1].replace("0.078", "0.090")], None),
     ("with dots", "", f"{RUN} Refinement/Levels=2", [HEAD, "...", ROWS[2]], None),
+    ("seconds without names of columns", "", f"{RUN} Refinement/Levels=1",
+     ["...", ROWS[1].replace("0.00", "9.99")], None),
+    ("status that is wanted", "exit status: 2", f"{RUN} Refinement/Bevels=2", [], None),
+    ("status that is not wanted", "exit status: 2", RUN + " Refinement/Levels=1", [],
+     "the command ends with status 0"),
+    ("a file that the page writes", "", f"cat > own.prm <<'END'\nnothing\nEND\n"
+     f"{RUN} Refinement/Levels=1", [HEAD] + ROWS[:2], None),
     ("shortened", "shortened: Refinement/Levels=1", f"{RUN} Refinement/Levels=2",
      [HEAD] + ROWS, None),
     ("error that is shown", "", FAILING, ["...", "No convergence on level 0 within "

@@ -17,16 +17,19 @@ NOT_RUN = {"apt-get", "cmake", "ctest", "paraview"}
 RUN = {"mpirun", "python3", "gmsh", "pvpython", "cd", "cp", "mkdir", "ls", "cat",
        "sed", "grep", "head", "tail", "diff", "mv", "rm", "echo", "test"}
 # A page goes on without these, as a reader would.
-OPTIONAL = {"gmsh", "pvpython"}
+OPTIONAL = {"gmsh", "pvpython", "xvfb-run"}
 STEPS = {"step-friction-2d", "step-friction-3d"}
-# Studies that take long, and the tests that run them in a quick form.
+# Studies that take long, and the tests that run them in a quick form. Any other
+# target must be the '--target' of a test.
 LONG_STUDIES = {
+    "doc": "pages/build",
     "charts": "charts/quick",
     "charts-draw": "charts/quick",
     "benchmark": "benchmark/quick",
     "figures": "figures/quick",
     "figures-2d": "figures/quick",
     "figures-3d": "figures/quick",
+    "figures-ideas": "figures-ideas/quick",
 }
 TIME_LIMIT = 400
 
@@ -90,11 +93,11 @@ class Scratch:
 
 
 def program_of(command):
-    """What a command runs, as written, without variables and mpirun."""
+    """What a command runs, as written, without variables and what starts it."""
     words = shlex.split(command, comments=True)
     while words and "=" in words[0].split("/")[0]:
         words = words[1:]
-    if words and words[0] == "mpirun":
+    while words and words[0] in ("mpirun", "xvfb-run"):
         words = words[1:]
         while words and words[0].startswith("-"):
             takes_value = words[0] in ("-np", "-n")
@@ -136,8 +139,8 @@ def problem_of_command(command, build):
 
 
 def missing_tools(block):
-    return sorted(name for name in OPTIONAL & set(programs_of(block))
-                  if not shutil.which(name))
+    words = {word for _, command in commands_of(block) for word in command.split()}
+    return sorted(name for name in OPTIONAL & words if not shutil.which(name))
 
 
 def is_run(block):
