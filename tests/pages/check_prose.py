@@ -179,9 +179,12 @@ def main():
     build = BuildTree(options.build, options.cmake, options.ctest)
     names = Names(repository, build, Entries(options.programs),
                   ForeignWords(options.foreign))
-    prose = Prose(repository, names)
-    for file in repository.pages():
-        prose.check_page(file)
+    for is_rehearsal in (True, False):
+        prose = Prose(repository, names)
+        for file in repository.pages():
+            prose.check_page(file)
+        if is_rehearsal:
+            names.entries.end_rehearsal()
     prose.check_scenes(build)
     prose.check_steps()
     prose.check_foreign_words()

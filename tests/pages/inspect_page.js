@@ -52,7 +52,8 @@ function checkWidth(offences) {
     return;
   // What is wider than the screen and is not in something that scrolls by itself.
   const wide = [...document.body.querySelectorAll("*")].filter(element => {
-    if (element.getBoundingClientRect().right + window.scrollX <= width + 1)
+    const box = element.getBoundingClientRect();
+    if (box.width === 0 || box.right + window.scrollX <= width + 1)
       return false;
     for (let e = element.parentElement; e && e !== document.body; e = e.parentElement)
       if (getComputedStyle(e).overflowX !== "visible")

@@ -118,7 +118,7 @@ class Entries:
         for section, names in self.sections.items():
             for name in names:
                 self.names.setdefault(name, []).append(section)
-        self._answers = {}
+        self._answers, self.is_rehearsal = {}, True
         self._scene = tempfile.NamedTemporaryFile("w", suffix=".prm")
         self._scene.write("# Nothing: entries are on the command line.\n")
         self._scene.flush()
@@ -134,22 +134,40 @@ class Entries:
                 self.sections[section].add(match.group(1))
 
     def problem(self, section, name, value):
-        """What is wrong with an entry, or None. The programs judge values: they
-        read entries in their order and stop at the first that is wrong, and the
-        last one here always is."""
+        """What is wrong with an entry, or None."""
         if name not in self.sections.get(section, ()):
             return f"there is no entry '{section}/{name}'"
         if value is None or "..." in value:
             return None
         key = f"{section}/{name}={value}"
+        if self.is_rehearsal:
+            self._answers.setdefault(key, None)
+            return None
         if key not in self._answers:
-            last = "No section/No entry"
-            run = subprocess.run(
-                [self.programs[0], self._scene.name, key, last + "=1"],
-                capture_output=True, text=True)
-            if run.returncode != 2:
-                raise RuntimeError(f"{self.programs[0]} does not refuse {last}:\n"
-                                   + run.stdout + run.stderr)
-            self._answers[key] = (None if last in run.stderr else
-                                  f"'{value}' is no value of '{section}/{name}'")
+            self._judge([key])
         return self._answers[key]
+
+    def end_rehearsal(self):
+        """Judges all entries that have been asked for until now, which is much
+        quicker than one by one."""
+        self._judge(list(self._answers))
+        self.is_rehearsal = False
+
+    def _judge(self, keys):
+        """The programs judge values: they read entries in their order and stop at
+        the first that is wrong, and the last one here always is."""
+        last = "No section/No entry"
+        run = subprocess.run(
+            [self.programs[0], self._scene.name] + keys + [last + "=1"],
+            capture_output=True, text=True)
+        if run.returncode != 2:
+            raise RuntimeError(f"{self.programs[0]} does not refuse {last}:\n"
+                               + run.stdout + run.stderr)
+        if last in run.stderr:
+            self._answers.update(dict.fromkeys(keys))
+        elif len(keys) == 1:
+            entry, _, value = keys[0].partition("=")
+            self._answers[keys[0]] = f"'{value}' is no value of '{entry}'"
+        else:
+            self._judge(keys[:len(keys) // 2])
+            self._judge(keys[len(keys) // 2:])
