@@ -13,6 +13,7 @@ ENTRY = re.compile(r"([A-Z][a-z]+(?: [a-z]+)*)/([A-Z][^=/]*?)\s*(?:=\s*(.*))?$")
 PRODUCTS = {".h5", ".pvd", ".vtu", ".pvtu", ".xdmf", ".html"}
 COMMANDS = {"cmake", "ctest", "mpirun", "apt-get", "python3", "gmsh", "pvpython",
             "paraview", "bash", "sh", "step-friction-2d", "step-friction-3d"}
+CMAKE_OPTIONS = {"build", "preset", "target", "parallel"}
 # A symbol of a formula that is written as code: a letter and a short index.
 SYMBOL = re.compile(r"(?:[A-Za-z]|phi|sum)_[a-z]{1,2}$")
 PLACEHOLDER = re.compile(r"[A-Z]+$|<.*>$|\.\.\.$")
@@ -128,7 +129,8 @@ class Names:
             return None if found or self._occurs(name) else (
                 f"nothing in the sources makes '{text}'")
         if Path(name).suffix in PRODUCTS or name in PRODUCTS:
-            return None if self._occurs(name.lstrip("*-")) else (
+            parts = [*Path(bare).parts[:-1], name.lstrip("*-")]
+            return None if all(map(self._occurs, parts)) else (
                 f"there is no file '{text}', and no source speaks of it")
         suffix = Path(name).suffix
         if suffix not in repository.suffixes and self._occurs(text.rstrip("/")):
@@ -146,10 +148,9 @@ class Names:
             if bare in self.foreign or token in self.foreign:
                 continue
             if re.match(r"--[a-z]", bare):
-                option = bare.split("=")[0]
+                option, _, bare = bare.partition("=")
                 if not self._occurs(option.lstrip("-")):
                     return f"no source has an option '{option}'"
-                continue
             if ("/" in bare and Path(bare).suffix in self.repository.suffixes
                     and self._looks_like_path(bare)):
                 problem = self._problem_of_path(bare, page)
@@ -194,7 +195,7 @@ class Names:
         own = (words[0].startswith("$") or Path(first).suffix in (".py", ".sh")
                or first in self.build.targets or first in ("python3", "mpirun"))
         for before, word in zip([""] + words, words):
-            problem = self._problem_of_argument(word, before, own, page)
+            problem = self._problem_of_argument(word, before, own, first, page)
             if problem:
                 return problem
         return None
@@ -210,7 +211,7 @@ class Names:
                         f"has the package '{word}'")
         return None
 
-    def _problem_of_argument(self, word, before, own, page):
+    def _problem_of_argument(self, word, before, own, command, page):
         if PLACEHOLDER.match(word) or word in self.foreign:
             return None
         if before in ("--target", "-t"):
@@ -224,6 +225,8 @@ class Names:
             return self.entries.problem(*match.groups())
         if word.startswith("--"):
             option = word.split("=")[0].lstrip("-")
+            if command == "cmake" and option not in CMAKE_OPTIONS:
+                return f"cmake has no option '--{option}' that the pages need"
             return None if not own or self._occurs(option) else (
                 f"no source has an option '--{option}'")
         if word.startswith("-") or not self._looks_like_path(word):

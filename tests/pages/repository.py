@@ -3,6 +3,7 @@ build tree, tests, presets, and entries of scene files."""
 
 import json
 import re
+import shutil
 import subprocess
 import tempfile
 from pathlib import Path
@@ -35,7 +36,7 @@ class Repository:
         self.words = set(re.findall(r"\w+", self.corpus))
 
     def _list_files(self):
-        if (self.root / ".git").exists():
+        if (self.root / ".git").exists() and shutil.which("git"):
             listing = subprocess.run(
                 ["git", "-c", f"safe.directory={self.root}", "ls-files",
                  "--cached", "--others", "--exclude-standard"],

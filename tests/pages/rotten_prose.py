@@ -26,7 +26,9 @@ A file `common/missing.cc`. <!-- ROTTEN -->
 A bare name of a file: `missing.py`. <!-- ROTTEN -->
 Files `missing-*.cc`. <!-- ROTTEN -->
 A product `missing.h5`. <!-- ROTTEN -->
+A folder of a product `missing/history.h5`. <!-- ROTTEN -->
 A test `solvers/missing`. <!-- ROTTEN -->
+An option `cmake --missing release`. <!-- ROTTEN -->
 A section `Solvers/Cycle`. <!-- ROTTEN -->
 An entry `Solver/Bicycle = V`. <!-- ROTTEN -->
 A value `Solver/Cycle = Q`. <!-- ROTTEN -->
@@ -111,8 +113,8 @@ def main():
     found = re.findall(r"^(\S+?):(\d+): ", run.stdout, re.M)
     wrong = [f"{':'.join(place)}: not found" for place in sorted(expected)
              if found.count(place) == 0]
-    wrong += [f"{':'.join(place)}: found, but nothing is wrong" for place in sorted(set(found))
-              if place not in expected]
+    wrong += [f"{':'.join(place)}: found, but nothing is wrong"
+              for place in sorted(set(found)) if place not in expected]
     wrong += [f"{':'.join(place)}: found more than once" for place in sorted(expected)
               if found.count(place) > 1]
     if run.returncode != 1:
