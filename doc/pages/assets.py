@@ -4,7 +4,9 @@
     assets.py FOLDER MATHJAX
 
 copies the pictures and files that pages link to, under files/, and what is
-needed of MathJax (version 2), under mathjax/."""
+needed of MathJax (version 2), under mathjax/; and takes out links that lead
+nowhere: where all classes within a class are private, Doxygen links to a list of
+them that it does not write."""
 
 import html
 import re
@@ -73,10 +75,20 @@ def copy(folder, link):
     shutil.copyfile(source, target)
 
 
+def without_dead_links(folder):
+    for page in folder.glob("*.html"):
+        text = page.read_text()
+        for anchor in set(re.findall(r'<a href="#([\w-]+)">[^<]*</a> &#124;', text)):
+            if f'name="{anchor}"' not in text and f'id="{anchor}"' not in text:
+                page.write_text(re.sub(
+                    rf'<a href="#{anchor}">[^<]*</a> &#124;\s*', "", text))
+
+
 def main():
     folder, mathjax = Path(sys.argv[1]), Path(sys.argv[2])
     shutil.rmtree(folder / "files", ignore_errors=True)
     try:
+        without_dead_links(folder)
         for link in wanted(folder):
             copy(folder, link)
         for part in MATHJAX:
