@@ -217,7 +217,7 @@ namespace Friction
             prescribed_value * normal - gap >
               1e-8 * (std::abs(gap) + prescribed_value.norm()))
           throw InputError(
-            "The prescribed displacement of the node at " + describe(point) +
+            "the prescribed displacement of the node at " + describe(point) +
             ", which also lies on the contact boundary, pushes it into the "
             "obstacle by " +
             std::to_string(prescribed_value * normal - gap) +

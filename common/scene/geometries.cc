@@ -568,11 +568,13 @@ namespace Friction
           is_good = false;
         }
       if (!is_good)
-        throw InputError(where + "the mesh file '" + scene.mesh_file +
-                         "' is not a " + Utilities::int_to_string(dim) +
-                         "D mesh of " +
-                         (dim == 2 ? "quadrilaterals" : "hexahedra") +
-                         " in Gmsh's .msh format; export it as such.");
+        throw InputError(
+          where + "the mesh file '" + scene.mesh_file + "' is not a " +
+          Utilities::int_to_string(dim) + "D mesh of " +
+          (dim == 2 ? "quadrilaterals" : "hexahedra") +
+          " in Gmsh's .msh format; export it as such, with a physical " +
+          (dim == 2 ? "surface" : "volume") +
+          " if anything in it is physical.");
     }
   } // namespace
 

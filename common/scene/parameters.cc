@@ -215,8 +215,10 @@ namespace Friction
       std::ifstream file(file_name);
       std::string   line;
       if (!file || file.peek() == std::ifstream::traits_type::eof())
-        throw InputError("cannot read the scene file '" + file_name +
-                         "'; give the path of an existing, readable file.");
+        throw InputError(
+          (file.is_open() ? "there is nothing in the scene file '"
+                          : "cannot read the scene file '") +
+          file_name + "'; give the path of an existing, readable scene.");
 
       std::vector<std::string> sections;
       for (const ParameterEntry &entry : parameter_entries())

@@ -418,6 +418,19 @@ namespace Friction
   std::string
   Scene<dim>::warning() const
   {
+    // One without the other is most likely forgotten. Given friction needs no
+    // obstacle.
+    const bool has_obstacle = parameters.obstacle.kind != ObstacleKind::none;
+    const bool has_boundary = parameters.contact.boundary_id >= 0;
+    if (has_obstacle && !has_boundary)
+      return "Warning: no part of the boundary may touch the obstacle, so "
+             "there "
+             "will be no contact; if there should be, set 'Contact/Boundary "
+             "id'.";
+    if (has_boundary && !has_obstacle && friction_law() != FrictionLaw::tresca)
+      return "Warning: there is no obstacle, so there will be no contact; if "
+             "there should be, set 'Obstacle/Kind'.";
+
     const double bound = eck_bound(dim, material().poisson_ratio());
     if (friction_coefficient() <= bound)
       return "";

@@ -177,7 +177,8 @@ namespace Friction
 
     /**
      * What should be said before anybody believes a solution, or nothing: that
-     * the coefficient of friction is above Eck's bound.
+     * there is an obstacle but no boundary that may touch it, or the other way
+     * round, or that the coefficient of friction is above Eck's bound.
      */
     std::string warning() const;
 

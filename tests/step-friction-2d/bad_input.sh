@@ -157,12 +157,23 @@ grep -q '^step-friction-2d: .*cannot be written' stderr ||
 verdict 'full device: the fields' "$problem"
 
 # A warning, and a solution all the same.
-run "$block" 'Contact/Friction coefficient=2' Refinement/Levels=0
-problem=
-[ $status -eq 0 ] || problem="$problem status $status"
-cat stdout stderr | grep -q "Eck's bound 0.958" || problem="$problem no warning"
-[ -s results/history.h5 ] || problem="$problem no history"
-verdict "F above Eck's bound" "$problem"
+warned()
+{
+  name=$1
+  pattern=$2
+  shift 2
+  run "$block" "$@" Refinement/Levels=0
+  problem=
+  [ $status -eq 0 ] || problem="$problem status $status"
+  cat stdout stderr | grep -q -e "$pattern" || problem="$problem no warning"
+  [ -s results/history.h5 ] || problem="$problem no history"
+  verdict "$name" "$problem"
+}
+warned "F above Eck's bound" "Eck's bound 0.958" \
+  'Contact/Friction coefficient=2'
+warned 'obstacle that nothing may touch' "Warning.*set 'Contact/Boundary id'" \
+  'Contact/Boundary id=-1'
+warned 'nothing to touch' "Warning.*set 'Obstacle/Kind'" Obstacle/Kind=none
 
 run "$block" 'Contact/Friction coefficient=0.95' Refinement/Levels=0
 problem=
