@@ -468,19 +468,18 @@ namespace StepFriction2d
   // Here the five parts of the method come together. What the solver is given
   // is the discrete problem, which is no more than references to what we have
   // set up, and the hierarchy of levels; from these it builds
-  // - the leading relaxation on the leaf mesh, which enforces contact and
-  //   friction node by node (<code>MonotoneSmoother</code>);
-  // - phases, truncation and derivatives of friction
-  //   (<code>Linearization</code>, <code>Truncation</code>);
-  // - one linear multigrid cycle for a correction (<code>CoarseCycle</code>,
-  //   on the Galerkin products in <code>LevelMatrices</code>);
-  // - projection to the admissible displacements, and to those that reverse
-  //   the slip of no node, and line search (<code>TrescaFunctional</code>),
-  //   along the correction recombined with the last step
-  //   (<code>Recombination</code>);
-  // - the energy that all of them agree on (<code>TrescaFunctional</code>).
+  // 1. the energy that all others agree on (<code>TrescaFunctional</code>);
+  // 2. the leading relaxation on the leaf mesh, which enforces contact and
+  //    friction node by node (<code>MonotoneSmoother</code>);
+  // 3. phases, truncation and derivatives of friction
+  //    (<code>Linearization</code>, <code>Truncation</code>);
+  // 4. one linear multigrid cycle for a correction (<code>CoarseCycle</code>,
+  //    on the Galerkin products in <code>LevelMatrices</code>);
+  // 5. recombination with the last step (<code>Recombination</code>), and
+  //    projection to the admissible displacements that reverse the slip of no
+  //    node and line search (<code>TrescaFunctional</code> again).
   //
-  // <i>Where is the friction cone?</i> In the first part, and nowhere else.
+  // <i>Where is the friction cone?</i> In part 2, and nowhere else.
   // When its turn comes, a contact node gets the displacement that minimises
   // the energy with all other nodes held, (6.15); this is
   // <code>MonotoneSmoother::relax_contact_node()</code>, and at its heart
@@ -501,32 +500,34 @@ namespace StepFriction2d
   // a sliding one, none at a sticking one. On these the energy is smooth, and
   // coarse levels solve the linear problem with the matrix $TAT$ (in two
   // dimensions friction adds nothing to it, for $|u_T|$ is piecewise linear).
-  // $T$ is applied to the residual (<code>linearize_residual()</code>) and to
-  // the blocks of $A$ on their way to the levels
-  // (<code>LevelMatrices::update()</code>), and never to the interpolation
-  // between levels. The bounds (6.12) on
-  // coarse corrections are used by the <code>monotone</code> variant only; by
-  // default a correction may be as large as it likes, and the line search deals
-  // with it.
+  // Residuals are multiplied by $T$ before they go down
+  // (<code>linearize_residual()</code>), corrections when they have come up,
+  // and blocks of $A$ on their way to the levels
+  // (<code>LevelMatrices::update()</code>). $A$ itself and the interpolation
+  // between levels are not changed. The bounds (6.12) are used by the
+  // <code>monotone</code> variant only; by default a correction may be as large
+  // as it likes, and the line search deals with it.
   //
   // <i>What does a cycle cost?</i> By default
   // - three forward and three backward sweeps over the leaf mesh, contact nodes
   //   included, whose local problems are two scalar equations at most;
   // - one residual and one product with the matrix, for the line search; a
   //   second product if the obstacle cuts the correction off;
-  // - six and six sweeps on the levels below. Only nodes that touch a refined
-  //   cell are relaxed there, and in two dimensions there is less than one
-  //   refined cell for three active ones, so that all of this is worth about
-  //   four sweeps over the leaf mesh;
+  // - six and six sweeps on the levels below, at nodes that touch a refined
+  //   cell. Of these cells there are less than a third as many as active ones,
+  //   in two dimensions, so that twelve sweeps are worth about four on the leaf
+  //   mesh;
   // - rows of level matrices near nodes whose phase has changed, which after a
   //   few cycles is nowhere, and a solution on the coarsest mesh.
   //
-  // Together these are about a dozen passes over the leaf matrix, whatever the
-  // number of unknowns, provided the coarsest mesh is small and the cycle a
-  // V-cycle. A linear problem would save the line search and the updates; the
-  // page <code>doc/benchmark.md</code> compares the two. How many cycles it
-  // takes is another question, to which we have measurements, see the results,
-  // but no theorem. For Algorithm 3 not even convergence is proved.
+  // Together this is the work of about a dozen sweeps over the leaf matrix,
+  // whatever the number of unknowns, provided the coarsest mesh is small and
+  // the cycle a V-cycle. (Memory sees fewer passes, since sweeps follow each
+  // other through the cache.) A linear problem would save the local problems,
+  // the line search and the updates: 13 percent of the solution of the Hertz
+  // scene with 1.3 million unknowns, see <code>doc/benchmark.md</code>. For the
+  // number of cycles we have measurements, see the results, but no theorem. For
+  // Algorithm 3 not even convergence is proved.
   //
   // The coefficient of friction of Tresca's law is absorbed in the given
   // bounds, hence the 1 in the problem's last entry.
@@ -571,13 +572,13 @@ namespace StepFriction2d
     // What the constructor does is done once per mesh, so that we count it as
     // setup. The iteration stops when the increment over a cycle, in the energy
     // norm and relative to $u$, is at most the inner tolerance; the outer
-    // tolerance is about $\tau$ in Algorithm 2. Increments prove little, for a
-    // method that stalls has small ones as well. So the solver then computes
-    // $f-Au$ from scratch and with it the <i>certificate</i>: by how much any
-    // node violates equilibrium, non-penetration, the sign of the normal force,
-    // complementarity, the friction cone, or the direction of slip, forces
-    // relative to the largest nodal force and lengths to the largest
-    // displacement or gap. Without a small certificate
+    // tolerance is for $\varepsilon^k$ of Algorithm 2. Increments prove little,
+    // for a method that stalls has small ones as well. So the solver then
+    // computes $f-Au$ from scratch and with it the <i>certificate</i>: by how
+    // much any node violates equilibrium, non-penetration, the sign of the
+    // normal force, complementarity, the friction cone, or the direction of
+    // slip, forces relative to the largest nodal force and lengths to the
+    // largest displacement or gap. Without a small certificate
     // <code>report.converged</code> is false.
     //
     // All of this is done by <code>CoulombSolver</code>. The class used here is

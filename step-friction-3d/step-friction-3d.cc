@@ -481,10 +481,11 @@ namespace StepFriction3d
   // the parts once more and see what becomes of them in three dimensions.
   //
   // <i>The local problem</i>, which enforces the friction cone
-  // (<code>SlipProblem::solve()</code>). At a contact node of the leading
-  // relaxation the energy (6.15) is minimised over the displacement of this
-  // node alone. Its normal component is $z_n=g$, unless it can leave the
-  // obstacle. In both cases there remains a problem in the tangential plane,
+  // (<code>LocalProblem</code>, which calls <code>SlipProblem</code>). At a
+  // contact node of the leading relaxation the energy (6.15) is minimised over
+  // the displacement of this node alone. Its normal component is $z_n=g$,
+  // unless it can leave the obstacle. In both cases there remains a problem in
+  // the tangential plane,
   // @f[
   //   \tfrac12 v^TAv-b^Tv+s|v| \to \min,\qquad s=\mathcal F\tau(p),
   // @f]

@@ -4,9 +4,9 @@
     assets.py FOLDER MATHJAX
 
 copies the pictures and files that pages link to, under files/, and what is
-needed of MathJax (version 2), under mathjax/; and takes out links that lead
-nowhere: where all classes within a class are private, Doxygen links to a list of
-them that it does not write."""
+needed of MathJax (version 2), under mathjax/; and takes out links of
+Doxygen's that are wrong or lead nowhere: where all classes within a class are
+private, it links to a list of them that it does not write."""
 
 import html
 import re
@@ -75,6 +75,16 @@ def copy(folder, link):
     shutil.copyfile(source, target)
 
 
+def without_wrong_links(folder):
+    """In the programs of the steps Doxygen takes variables for members and values
+    of the library that have the same name."""
+    for step in sites.STEPS:
+        page = folder / f"{sites.page_of_step(step)}.html"
+        page.write_text(re.sub(
+            r'<a class="code hl_(?:enumvalue|variable)"[^>]*>([^<]*)</a>', r"\1",
+            page.read_text()))
+
+
 def without_dead_links(folder):
     for page in folder.glob("*.html"):
         text = page.read_text()
@@ -89,6 +99,7 @@ def main():
     shutil.rmtree(folder / "files", ignore_errors=True)
     try:
         without_dead_links(folder)
+        without_wrong_links(folder)
         for link in wanted(folder):
             copy(folder, link)
         for part in MATHJAX:

@@ -54,16 +54,17 @@ def picture(target, text, source):
             f'alt="{html.escape(" ".join(text.split()))}"></a>@endhtmlonly')
 
 
-def link_to_class(name):
-    return f"<code>@ref {name} \"{name}\"</code>"
+def link_to_class(name, text=""):
+    return f"<code>@ref {name} \"{text or name}\"</code>"
 
 
 def code(text, source, names):
     """Code in the text: of a class or a file it is a link."""
     content = (text[6:-7] if text.startswith("<code>") else text[1:-1])
     content = html.unescape(" ".join(content.split()))
-    if content in names.classes:
-        return link_to_class(content)
+    name = content.partition("::")[0]
+    if name in names.classes:
+        return link_to_class(name, content)
     if names.files and re.fullmatch(r"[\w./-]+\.\w+|common", content):
         for path in (sites.resolve(content, source), content):
             if (sites.ROOT / path).exists() and not path.startswith(".."):
