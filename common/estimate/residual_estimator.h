@@ -101,7 +101,7 @@ namespace Friction
 
 
   /**
-   * Residual-based estimate of the error in the energy norm,
+   * Residual-based estimate of the error in the energy norm.
    * @f{align*}{
    *   \eta_K^2 = \frac1{2\mu}\Big(
    *      & h_K^2\,\|f+\operatorname{div}\sigma_h\|_K^2

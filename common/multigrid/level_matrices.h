@@ -11,7 +11,7 @@
 namespace Friction
 {
   /**
-   * The exact Galerkin matrices of the truncated functions of all levels,
+   * The exact Galerkin matrices of the truncated functions of all levels.
    * @f[ B_k = M_k^T\, T (A + \omega'') T\, M_k, @f]
    * where $M_k$ prolongs from level $k$ to the leaf mesh. They are built
    * without that global product, from the blocks of the leaf matrix: the block

@@ -130,7 +130,7 @@ namespace Friction
     /** r = b - A x. */
     void residual(double *r, const double *b, const double *x) const;
 
-    /** The same for the rows begin,...,end-1 only. */
+    /** The same for the rows from begin to end-1 only. */
     void residual(double            *r,
                   const double      *b,
                   const double      *x,

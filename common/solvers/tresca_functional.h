@@ -7,8 +7,8 @@
 namespace Friction
 {
   /**
-   * The energy of the contact problem with given friction bounds, (6.8),
-   * @f[ \hat J(u) = \tfrac12 u^T A u - f^T u + \sum_p F\tau(p)\,|u_T(p)|, @f]
+   * The energy of the contact problem with given friction bounds (6.8).
+   * @f[ \hat J(u) = \tfrac12 u^T A u - f^T u + \sum_p F\tau(p)\,|u_T(p)| @f]
    * over $u_n(p)\le g(p)$, and its exact minimisation along a line. All parts
    * of the solver that speak of energy mean this one, evaluated here.
    */

@@ -44,7 +44,8 @@ class Workshop:
         done = subprocess.run(command, capture_output=True, text=True)
         (directory / "console.txt").write_text(done.stdout)
         if done.returncode != 0 and not fails:
-            raise Failure(f"{scene} in {dim}D ({name}) ended with an error:\n"
+            raise Failure(f"{scene} in {dim}D ({name}) ended with status "
+                          f"{done.returncode}:\n"
                           f"{done.stdout[-2000:]}{done.stderr[-2000:]}")
         return directory
 
