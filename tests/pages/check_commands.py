@@ -13,7 +13,7 @@ from pathlib import Path
 import shell
 from check_prose import commands_of
 from console import Comparison
-from markup import Page
+from prose_page import Page
 from repository import BuildTree, Repository
 
 

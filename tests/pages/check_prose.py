@@ -10,13 +10,18 @@ import re
 import sys
 from pathlib import Path
 
-from markup import Page
+from prose_page import Page
 from names import COMMANDS, ForeignWords, Names
 from repository import BuildTree, Entries, Repository
 
 # A step is read from its beginning to its end.
 MOST_CODE_LINES = 700
 COMMENTS_PER_CODE = (0.5, 0.9)
+
+
+# Of blocks: these are checked, or show what is printed. Others would be overlooked.
+KNOWN_LANGUAGES = ("sh", "bash", "indented", "prm", "cpp", "c++", "cc", "text", "txt",
+                   "table", "")
 
 
 class Prose:
@@ -55,6 +60,10 @@ class Prose:
                     continue
                 self.report(file, line,
                             self.names.problem_of_command(command, page))
+        elif block.language not in KNOWN_LANGUAGES:
+            self.report(file, block.line, "nothing checks a block of "
+                        f"'{block.language}'; take one of "
+                        f"{', '.join(filter(None, KNOWN_LANGUAGES))}")
         elif block.language == "prm":
             self.check_scene_lines(file, block)
         elif block.language in ("cpp", "c++", "cc"):

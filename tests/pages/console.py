@@ -62,6 +62,11 @@ class Comparison:
                 self.offences.append((
                     self.shown[-1][0], "the page does not show what comes next "
                     f"(a line '{GAP}' would do):\n  " + self.printed[position]))
+        if not self.offences and not any(
+                line.strip() != GAP and line.split()[0] != "level"
+                for _, line in self.shown):
+            self.offences.append((self.shown[0][0] if self.shown else 0,
+                                  "nothing is shown that could be compared"))
         self.last_shown = position >= len(self.printed) and not gap
 
     def _find(self, line, position, gap, columns):

@@ -6,7 +6,7 @@ import re
 import shlex
 from pathlib import Path
 
-from markup import Page
+from prose_page import Page
 
 ENTRY = re.compile(r"([A-Z][a-z]+(?: [a-z]+)*)/([A-Z][^=/]*?)\s*(?:=\s*(.*))?$")
 # Endings of files that runs leave behind; such names must occur in sources.

@@ -46,7 +46,11 @@ CASES = [
      "1 cycles. Certificate: equilibrium 1.00e-16, penetration 0.00e+00, tension "
      "1.00e-16, complementarity 1.00e-16, friction cone 1.00e-16, slip direction "
      "1.00e-16."], None),
-    ("error that is not shown", "", FAILING, ["..."], "the command ends with"),
+    ("error that is not shown", "", FAILING,
+     [HEAD, ROWS[0].replace("   2  0.000", "   1  0.000"), "..."],
+     "the command ends with"),
+    ("nothing but dots", "", f"{RUN} Refinement/Levels=1", [HEAD, "..."],
+     "nothing is shown"),
     ("integer", "", f"{RUN} Refinement/Levels=1",
      [HEAD, ROWS[0], ROWS[1].replace(" 150 ", " 151 ")], "the page shows"),
     ("integer after dots", "", f"{RUN} Refinement/Levels=2",

@@ -63,6 +63,10 @@ end
 Shape area;
 missing(area); // ROTTEN
 ```
+
+```console
+a command that nothing runs, ROTTEN
+```
 """
 
 DOX = """<h3>Known</h3>
