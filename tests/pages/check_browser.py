@@ -60,8 +60,13 @@ def has_formulas(page):
     return re.search(r"\\\(|\\\[", page.read_text(errors="replace")) is not None
 
 
+def leads_elsewhere(page):
+    return 'http-equiv="refresh"' in page.read_text(errors="replace")
+
+
 def choose(pages, everything):
     """All pages written by hand, and of the others those with formulas and some."""
+    pages = [page for page in pages if not leads_elsewhere(page)]
     by_hand = [page for page in pages if is_written_by_hand(page)]
     others = [page for page in pages if page not in by_hand]
     if not everything:

@@ -26,7 +26,8 @@ function checkText(offences) {
     const node = walker.currentNode;
     if (!node.parentElement || node.parentElement.closest(verbatim))
       continue;
-    const left = leftovers.find(one => node.data.includes(one));
+    const text = node.data.replace(/operator\[\]\(/g, "");
+    const left = leftovers.find(one => text.includes(one));
     if (left)
       offences.push(`raw markup '${left}' in the text '${short(node.data)}'`);
   }
