@@ -100,7 +100,7 @@ def program_of(command):
     while words and words[0] in ("mpirun", "xvfb-run"):
         words = words[1:]
         while words and words[0].startswith("-"):
-            takes_value = words[0] in ("-np", "-n")
+            takes_value = words[0] in ("-np", "-n", "-s")
             words = words[2 if takes_value else 1:]
     return words[0] if words else ""
 
