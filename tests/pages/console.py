@@ -8,6 +8,8 @@ NOT_COMPARED = {"seconds"}
 # Of numbers in other lines, among them residuals that are but rounding errors.
 RELATIVE, ABSOLUTE = 2e-5, 1e-9
 GAP = "..."
+# Printed in between where something takes long, as on a busy machine.
+PROGRESS = re.compile(r" *level \d+: cycle \d+, increment ")
 
 
 class Comparison:
@@ -16,7 +18,8 @@ class Comparison:
 
     def __init__(self, shown, printed, shortened):
         self.shown = [(number, line) for number, line in shown if line.strip()]
-        self.printed = [line for line in printed.splitlines() if line.strip()]
+        self.printed = [line for line in printed.splitlines()
+                        if line.strip() and not PROGRESS.match(line)]
         self.shortened = shortened
         self.offences = []       # (line of the page, sentence)
         self.last_shown = False  # whether the last line printed has been shown
