@@ -82,7 +82,7 @@ check_files()
 {
   [ -n "$python" ] || { echo "skipped $1: no python3 with h5py"; return; }
   problem=
-  "$python" "$tests/output/check_results.py" "$2" $3 >message 2>&1 ||
+  "$python" -B "$tests/output/check_results.py" "$2" $3 >message 2>&1 ||
     problem=" $(tail -1 message)"
   verdict "$1" "$problem"
 }
