@@ -56,12 +56,6 @@ def resolve(target, source):
     return posixpath.normpath(posixpath.join(posixpath.dirname(source), target))
 
 
-def is_asset(path):
-    """Whether a path is copied as it is, to be looked at beside the pages."""
-    return (page(path) is None and not is_library(path) and
-            section_of_step(path) is None)
-
-
 def is_library(path):
     """Whether Doxygen makes pages of its own of a file."""
     return path.startswith("common/") and path.endswith((".h", ".cc"))

@@ -37,11 +37,11 @@ def main():
         done = run(root / "doc/pages/filter.py", root / "doc/broken.md")
         if done.returncode == 0 or "doc/broken.md" not in done.stderr:
             wrong.append("a broken page passes the filter")
-        done = run(root / "doc/pages/assets.py", html, scratch)
+        done = run(root / "doc/pages/mend.py", html)
         if done.returncode == 0 or "doc/broken.md" not in done.stderr:
             wrong.append(f"nobody misses the broken page: {done.stderr}")
         (html / "broken.html").write_text('<div class="title">A page</div>')
-        done = run(root / "doc/pages/assets.py", html, scratch)
+        done = run(root / "doc/pages/mend.py", html)
         if done.returncode != 0:
             wrong.append(f"nothing is missing any more, but: {done.stderr}")
     print("\n".join(wrong) or "A page that cannot be made is an error.")
