@@ -1,7 +1,6 @@
 """A body with a single contact node, whose normal force given and found are drawn
 against each other; and a run with much friction that does not converge."""
 
-import h5py
 import numpy as np
 
 from chart import BLUE, GREY, RED, grid, plt
@@ -66,14 +65,11 @@ def draw_map(axes, node, title, start, limits, steps):
 def draw_run(axes, workshop):
     """Increments on the level where the iteration ends, and how many components
     are held there, which is what phases amount to."""
-    directory = workshop.run(
+    run = workshop.history(
         2, "raous", "large-friction", "Contact/Friction coefficient=10",
         "Solver/Safeguards=false", fails=True)
-    with h5py.File(directory / "history.h5") as file:
-        level = file["cycles"]["level"][:]
-        increment = file["cycles"]["increment"][:]
-        held = file["cycles"]["truncated"][:]
-    shown = np.flatnonzero(level == level[-1])[:60]
+    increment, held = run.cycles["increment"], run.cycles["truncated"]
+    shown = np.flatnonzero(run.cycles["level"] == run.last)[:60]
     cycle = 1 + np.arange(len(shown))
     axes.semilogy(cycle, increment[shown], color=BLUE, linewidth=1.0)
     for number, style in zip(np.unique(held[shown]), ("^", "o", "s", "v", "D")):

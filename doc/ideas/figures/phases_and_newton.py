@@ -2,7 +2,6 @@
 the increments, over the cycles of runs of the scene 'hertz' that begin from nothing
 on a fine mesh."""
 
-import h5py
 import numpy as np
 
 from chart import BLUE, GREEN, ORANGE, grid, plt
@@ -10,11 +9,10 @@ from drawing_of_ideas import Failure
 
 
 def cycles(workshop, name, *entries):
-    directory = workshop.run(
+    return workshop.history(
         2, "hertz", name, "Refinement/Strategy=uniform", "Refinement/Levels=0",
-        f"Refinement/Initial refinements={2 if workshop.quick else 6}", *entries)
-    with h5py.File(directory / "history.h5") as file:
-        return {key: data[:] for key, data in file["cycles"].items()}
+        f"Refinement/Initial refinements={2 if workshop.quick else 6}",
+        *entries).cycles
 
 
 def draw(workshop):

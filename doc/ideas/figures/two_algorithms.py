@@ -1,6 +1,5 @@
 """Algorithms 2 and 3 on one level of the Hertz scene, cycle by cycle."""
 
-import h5py
 import numpy as np
 
 from chart import BLUE, GREY, PINK, grid, plt
@@ -12,15 +11,13 @@ class Cycles:
     """The cycles of a run on one level: their increments, and how far the energy
     is from `end`, as parts of it."""
 
-    def __init__(self, directory, level):
-        with h5py.File(directory / "history.h5") as file:
-            here = file["cycles"]["level"][:] == level
-            self.increment = file["cycles"]["increment"][:][here]
-            self.energy = file["cycles"]["energy"][:][here]
-            self.changes = None
-            if "outer" in file:
-                there = file["outer"]["level"][:] == level
-                self.changes = file["outer"]["change"][:][there]
+    def __init__(self, run, level):
+        here = run.cycles["level"] == level
+        self.increment = run.cycles["increment"][here]
+        self.energy = run.cycles["energy"][here]
+        self.changes = None
+        if run.outer:
+            self.changes = run.outer["change"][run.outer["level"] == level]
         self.number = 1 + np.arange(len(self.increment))
 
     def parts(self):
@@ -70,7 +67,7 @@ def draw_energies(axes, two, three):
 
 def draw(workshop):
     level = 3 if workshop.quick else 6
-    two, three = (Cycles(workshop.run(
+    two, three = (Cycles(workshop.history(
         2, "hertz", f"two-algorithms-{number}", f"Refinement/Levels={level}",
         "Solver/Safeguards=false", f"Solver/Algorithm={name}"), level)
         for number, name in ALGORITHMS.items())
