@@ -14,6 +14,18 @@ SCENES = {2: DOC.parent / "step-friction-2d" / "scenes",
           3: DOC.parent / "step-friction-3d" / "scenes"}
 
 
+# Colour and marker of the phases of contact nodes.
+PHASES = {"open": (chart.SKY, "o"), "slip": (chart.ORANGE, "D"),
+          "stick": (chart.RED, "s")}
+
+
+def mark_phases(axes, phases, x, y, **style):
+    """Nodes at (x, y) with the markers of their phases."""
+    for phase, (color, marker) in PHASES.items():
+        chosen = phases == phase
+        axes.plot(x[chosen], y[chosen], marker, color=color, label=phase, **style)
+
+
 class Failure(Exception):
     """Why there is no picture, in one sentence."""
 

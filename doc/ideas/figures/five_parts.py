@@ -2,11 +2,10 @@
 
 import numpy as np
 
-from chart import BLUE, GREEN, GREY, ORANGE, RED, SKY, grid, plt
+from chart import BLUE, GREEN, GREY, RED, SKY, grid, plt
+from drawing_of_ideas import PHASES, mark_phases
 from small_block import SmallBlock
 
-PHASES = {"open": (SKY, "o"), "slip": (ORANGE, "D"),
-          "stick": (RED, "s")}
 # The step that is shown: not yet with the phases of the solution.
 SHOWN = 2
 
@@ -39,20 +38,12 @@ def heights(block, u):
     return block.points[block.contact, 0], block.gap + u[2 * block.contact + 1]
 
 
-def markers(axes, block, u, y, size=4):
-    x = block.points[block.contact, 0]
-    for phase, (color, marker) in PHASES.items():
-        of_phase = block.phases(u) == phase
-        axes.plot(x[of_phase], np.broadcast_to(y, x.shape)[of_phase], marker,
-                  color=color, markersize=size, label=phase, linestyle="")
-
-
 def relaxation(axes, block, before, after):
     x, height = heights(block, before)
     axes.plot(x, height * 1e3, "--", color=GREY, linewidth=1, label="before")
     x, height = heights(block, after)
     axes.plot(x, height * 1e3, color=BLUE, linewidth=1, label="after")
-    markers(axes, block, after, height * 1e3, 3)
+    mark_phases(axes, block.phases(after), x, height * 1e3, markersize=3)
     axes.fill_between(x, -4, 0, color="0.85", linewidth=0)
     axes.set(ylim=(-2, 12), xlabel="lower side", xticks=[], yticks=[],
              ylabel="height")

@@ -3,10 +3,9 @@ phases are those of a small block."""
 
 import numpy as np
 
-from chart import BLUE, GREY, ORANGE, RED, SKY, plt
+from chart import BLUE, GREY, plt
+from drawing_of_ideas import mark_phases
 from small_block import SmallBlock, hats
-
-PHASES = {"open": (SKY, "o"), "slip": (ORANGE, "D"), "stick": (RED, "s")}
 
 
 def draw(workshop):
@@ -36,11 +35,8 @@ def draw(workshop):
         ax.tick_params(bottom=False, labelbottom=False)
         for name in ("left", "top", "right"):
             ax.spines[name].set_visible(False)
-    phases = block.phases(u)
-    for phase, (color, marker) in PHASES.items():
-        of_phase = phases == phase
-        axes[-1].plot(x[of_phase], np.zeros(of_phase.sum()), marker, color=color,
-                      label=phase, markersize=5, clip_on=False, zorder=3)
+    mark_phases(axes[-1], block.phases(u), x, np.zeros_like(x), markersize=5,
+                clip_on=False, zorder=3)
     axes[-1].legend(loc="upper center", bbox_to_anchor=(0.5, -0.08), ncol=3,
                     fontsize=10, handletextpad=0.1)
     workshop.save(figure, "hierarchy")
