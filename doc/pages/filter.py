@@ -19,13 +19,10 @@ import step_page
 def classes():
     """Classes and structures of the library that have a page of their own: those
     at the outermost level of the namespace."""
-    found = set()
-    for path in sites.ROOT.glob("common/**/*.h"):
-        found.update(re.findall(r"^  (?:class|struct) (\w+)(?: final)?$(?!;)",
-                                path.read_text(), flags=re.MULTILINE))
-        found.update(re.findall(r"^  (?:class|struct) (\w+) : ",
-                                path.read_text(), flags=re.MULTILINE))
-    return found
+    return {name for path in sites.ROOT.glob("common/**/*.h")
+            for name in re.findall(
+                r"^  (?:class|struct) (\w+)(?: final)?(?:$| : )",
+                path.read_text(), flags=re.MULTILINE)}
 
 
 def main():
@@ -33,14 +30,14 @@ def main():
     dealii = "--dealii" in arguments
     path = Path(arguments[-1]).resolve()
     source = path.relative_to(sites.ROOT).as_posix()
-    names = markup.Names(classes(), dealii)
     try:
         if source.startswith("common/"):
             text = markup.library(path.read_text())
         elif source.endswith(".md"):
-            text = markup.markdown(path.read_text(), source, names)
+            text = markup.markdown(path.read_text(), source,
+                                   markup.Names(classes(), dealii))
         else:
-            text = step_page.page(source, names)
+            text = step_page.page(source, markup.Names(classes(), dealii))
     except (ValueError, OSError) as error:
         sys.exit(f"{source}: {error}")
     sys.stdout.write(text)

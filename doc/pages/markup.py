@@ -76,7 +76,7 @@ def code(text, source, names):
 
 def link(path, text, source, heading=""):
     if sites.is_library(path):
-        plain = re.sub(r"<[^>]*>|@(end)?htmlonly|`", "", text)
+        plain = re.sub(r"<[^>]*>|`", "", text)
         return f'@ref {path} "{plain}"'
     return f'<a href="{html.escape(sites.site(path, heading))}">{text}</a>'
 
