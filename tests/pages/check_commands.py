@@ -14,7 +14,7 @@ import shell
 from check_prose import commands_of
 from console import Comparison
 from prose_page import Page
-from repository import BuildTree, Repository
+from repository import BuildTree, Repository, add_arguments
 
 
 class Shortened:
@@ -131,10 +131,7 @@ class Commands:
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--root", type=Path, required=True)
-    parser.add_argument("--build", required=True, help="the build tree")
-    parser.add_argument("--cmake", default="cmake")
-    parser.add_argument("--ctest", default="ctest")
+    add_arguments(parser)
     parser.add_argument("--shortened", type=Path,
                         default=Path(__file__).with_name("shortened.txt"))
     parser.add_argument("programs", nargs=2, help="the step programs")

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from prose_page import Page
 from names import COMMANDS, ForeignWords, Names
-from repository import BuildTree, Entries, Repository
+from repository import BuildTree, Entries, Repository, add_arguments
 
 # A step is read from its beginning to its end.
 MOST_CODE_LINES = 700
@@ -172,10 +172,7 @@ def count_lines(source):
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--root", type=Path, required=True)
-    parser.add_argument("--build", required=True, help="the build tree")
-    parser.add_argument("--cmake", default="cmake")
-    parser.add_argument("--ctest", default="ctest")
+    add_arguments(parser)
     parser.add_argument("--foreign", type=Path,
                         default=Path(__file__).with_name("foreign_words.txt"))
     parser.add_argument("programs", nargs="+", help="the step programs")

@@ -14,6 +14,14 @@ NO_SOURCES = {".md", ".dox", ".png", ".svg", ".csv", ".output", ".msh", ".txt"}
 NOT_FOR_WORDS = "tests/pages/"
 
 
+def add_arguments(parser):
+    """What a check has to know of the repository, a build tree and its tools."""
+    parser.add_argument("--root", type=Path, required=True)
+    parser.add_argument("--build", required=True, help="the build tree")
+    parser.add_argument("--cmake", default="cmake")
+    parser.add_argument("--ctest", default="ctest")
+
+
 class Repository:
     def __init__(self, root):
         self.root = Path(root).resolve()
