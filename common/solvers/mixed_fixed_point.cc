@@ -1,7 +1,6 @@
 #include <common/parallel/reductions.h>
+#include <common/solvers/best_combination.h>
 #include <common/solvers/mixed_fixed_point.h>
-
-#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
@@ -94,9 +93,8 @@ namespace Friction
     last_point    = point;
     last_residual = residual;
 
-    // The combination of changes that comes closest to the residual, by the
-    // normal equations, scaled; all scalar products in one reduction.
-    // Numerically dependent changes are left out by the pivoted factorisation.
+    // The combination of changes that comes closest to the residual; all scalar
+    // products in one reduction.
     const unsigned int  n = steps.size();
     std::vector<double> products;
     for (unsigned int i = 0; i < n; ++i)
@@ -106,34 +104,16 @@ namespace Friction
           products.push_back(share(changes[i], changes[j]));
       }
     sum_over_processes(products, communicator);
-    Eigen::MatrixXd gram(n, n);
-    Eigen::VectorXd rhs(n), scale(n);
-    auto            product = products.begin();
-    for (unsigned int i = 0; i < n; ++i)
-      {
-        rhs(i) = *product++;
-        for (unsigned int j = 0; j <= i; ++j)
-          gram(i, j) = gram(j, i) = *product++;
-        scale(i) = gram(i, i) > 0 ? 1. / std::sqrt(gram(i, i)) : 0.;
-      }
-    Eigen::VectorXd coefficients = Eigen::VectorXd::Zero(n);
-    if (n > 0)
-      {
-        Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(
-          scale.asDiagonal() * gram * scale.asDiagonal());
-        qr.setThreshold(1e-12);
-        coefficients = scale.asDiagonal() * qr.solve(scale.asDiagonal() * rhs);
-        if (!coefficients.allFinite())
-          coefficients.setZero();
-      }
+    std::vector<double> coefficients = best_combination(products, n, 1e-12);
+    coefficients.resize(n, 0.);
 
     for (std::size_t i = 0; i < point.size(); ++i)
       {
         double p = point[i], r = residual[i];
         for (unsigned int k = 0; k < n; ++k)
           {
-            p -= coefficients(k) * steps[k][i];
-            r -= coefficients(k) * changes[k][i];
+            p -= coefficients[k] * steps[k][i];
+            r -= coefficients[k] * changes[k][i];
           }
         point[i] = std::max(0., p + present_damping * r);
       }

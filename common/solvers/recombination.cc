@@ -1,7 +1,6 @@
 #include <common/parallel/reductions.h>
+#include <common/solvers/best_combination.h>
 #include <common/solvers/recombination.h>
-
-#include <Eigen/Dense>
 
 #include <algorithm>
 #include <cmath>
@@ -120,36 +119,19 @@ namespace Friction
                                     friction(*basis[i], *basis[j]));
       }
     sum_over_processes(products_of_all, comm);
-    Eigen::MatrixXd gram(n, n);
-    Eigen::VectorXd rhs(n);
-    auto            next = products_of_all.begin();
-    for (unsigned int i = 0; i < n; ++i)
-      {
-        rhs(i) = *next++;
-        for (unsigned int j = 0; j <= i; ++j)
-          gram(i, j) = gram(j, i) = *next++;
-      }
-    // Scaled to a unit diagonal; directions that are numerically dependent are
-    // left out by the pivoted factorisation. So is one without energy, like a
-    // correction from coarse levels on which nothing can move.
-    Eigen::VectorXd scale(n);
-    for (unsigned int i = 0; i < n; ++i)
-      scale(i) = gram(i, i) > 0 ? 1. / std::sqrt(gram(i, i)) : 0.;
-    const Eigen::MatrixXd scaled =
-      scale.asDiagonal() * gram * scale.asDiagonal();
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scaled);
-    qr.setThreshold(1e-10);
-    const Eigen::VectorXd coefficients =
-      scale.asDiagonal() * qr.solve(scale.asDiagonal() * rhs);
-    if (!coefficients.allFinite())
+    // A direction without energy, like a correction from coarse levels on which
+    // nothing can move, is left out.
+    const std::vector<double> coefficients =
+      best_combination(products_of_all, n, 1e-10);
+    if (coefficients.empty())
       return 0;
 
-    v *= coefficients(0);
-    Av *= coefficients(0);
+    v *= coefficients[0];
+    Av *= coefficients[0];
     for (unsigned int i = 1; i < n; ++i)
       {
-        v.add(coefficients(i), *basis[i]);
-        Av.add(coefficients(i), *images[i]);
+        v.add(coefficients[i], *basis[i]);
+        Av.add(coefficients[i], *images[i]);
       }
     truncation.apply(v.begin());
     return n - 1;
