@@ -9,6 +9,12 @@
 #include <deal.II/base/index_set.h>
 #include <deal.II/base/mpi.h>
 
+#if DEAL_II_VERSION_GTE(9, 7, 0)
+#  include <deal.II/numerics/solution_transfer.h>
+#else
+#  include <deal.II/distributed/solution_transfer.h>
+#endif
+
 #include <deal.II/lac/affine_constraints.h>
 
 namespace Friction
@@ -29,6 +35,20 @@ namespace Friction
       return object.get_communicator();
 #endif
     }
+
+    /**
+     * What carries nodal vectors from a mesh to its refinement, also if both
+     * are distributed over processes. In deal.II 9.7 there is one class for
+     * all meshes; the one for distributed ones is on its way out.
+     */
+#if DEAL_II_VERSION_GTE(9, 7, 0)
+    template <int dim, typename VectorType>
+    using SolutionTransfer = dealii::SolutionTransfer<dim, VectorType>;
+#else
+    template <int dim, typename VectorType>
+    using SolutionTransfer =
+      dealii::parallel::distributed::SolutionTransfer<dim, VectorType>;
+#endif
 
     /**
      * An empty set of constraints for the locally relevant degrees of freedom.

@@ -9,7 +9,6 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/timer.h>
 
-#include <deal.II/distributed/solution_transfer.h>
 #include <deal.II/distributed/tria.h>
 
 #include <deal.II/dofs/dof_handler.h>
@@ -41,6 +40,7 @@
 #include <common/output/level_records.h>
 #include <common/output/run_output.h>
 #include <common/program/command_line.h>
+#include <common/program/version.h>
 #include <common/scene/parameters.h>
 #include <common/scene/scene.h>
 #include <common/solvers/discretization_stop.h>
@@ -166,7 +166,7 @@ namespace StepFriction3d
     , fe(FE_Q<dim>(1), dim)
     , dof_handler(triangulation)
     , stop(parameters.solver)
-    , output(parameters, scene, std::cout, FRICTION_VERSION, MPI_COMM_WORLD)
+    , output(parameters, scene, std::cout, version(), MPI_COMM_WORLD)
   {}
 
 
@@ -743,8 +743,7 @@ namespace StepFriction3d
   void
   ContactProblem<dim>::refine_mesh()
   {
-    parallel::distributed::SolutionTransfer<dim, VectorType> transfer(
-      dof_handler);
+    Compatibility::SolutionTransfer<dim, VectorType> transfer(dof_handler);
     const double lift_of_displacement = lift_above_rounding(displacement);
     const double lift_of_tractions    = lift_above_rounding(tractions);
     triangulation.prepare_coarsening_and_refinement();

@@ -2,7 +2,6 @@
 #include <common/output/checkpoint.h>
 #include <common/parallel/collective_error.h>
 
-#include <deal.II/distributed/solution_transfer.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -134,8 +133,7 @@ namespace Friction
     demand_space((part / "mesh").string(), communicator, size);
     try
       {
-        parallel::distributed::SolutionTransfer<dim, VectorType> transfer(
-          dof_handler);
+        Compatibility::SolutionTransfer<dim, VectorType> transfer(dof_handler);
         transfer.prepare_for_serialization(pointers);
         triangulation.save((part / "mesh").string());
       }
@@ -237,8 +235,7 @@ namespace Friction
   Checkpoints::load_vectors(const DoFHandler<dim>    &dof_handler,
                             std::vector<VectorType *> vectors)
   {
-    parallel::distributed::SolutionTransfer<dim, VectorType> transfer(
-      dof_handler);
+    Compatibility::SolutionTransfer<dim, VectorType> transfer(dof_handler);
     transfer.deserialize(vectors);
   }
 

@@ -33,10 +33,10 @@ namespace Friction
         all.insert(all.end(), part.begin(), part.end());
 
       std::sort(all.begin(), all.end(), [](const auto &a, const auto &b) {
-        return std::lexicographical_compare(a.point.begin_raw(),
-                                            a.point.end_raw(),
-                                            b.point.begin_raw(),
-                                            b.point.end_raw());
+        for (unsigned int d = 0; d < dim; ++d)
+          if (a.point[d] != b.point[d])
+            return a.point[d] < b.point[d];
+        return false;
       });
       return all;
     }

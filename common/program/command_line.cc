@@ -1,5 +1,8 @@
 #include <common/parallel/collective_error.h>
 #include <common/program/command_line.h>
+#include <common/program/version.h>
+
+#include <deal.II/base/config.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -23,6 +26,9 @@ namespace Friction
         "       " +
         program +
         " --parameters   print all entries with defaults\n"
+        "       " +
+        program +
+        " --version      print the version\n"
         "       " +
         program +
         " --help         print this\n"
@@ -91,6 +97,19 @@ namespace Friction
               (arguments.empty() ? std::cerr : std::cout)
                 << usage(program, dimensions, example) << std::flush;
             return arguments.empty() ? 2 : 0;
+          }
+        if (arguments[0] == "--version")
+          {
+            if (speaks)
+              std::cout << program << ' ' << version() << " (deal.II "
+                        << DEAL_II_PACKAGE_VERSION << ", "
+#ifdef DEBUG
+                        << "debug mode"
+#else
+                        << "release mode"
+#endif
+                        << ')' << std::endl;
+            return 0;
           }
         if (arguments[0] == "--parameters")
           {

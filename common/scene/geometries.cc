@@ -41,7 +41,8 @@ namespace Friction
                const types::manifold_id         manifold)
       {
         cells.emplace_back();
-        cells.back().vertices    = cell_vertices;
+        cells.back().vertices.assign(cell_vertices.begin(),
+                                     cell_vertices.end());
         cells.back().material_id = 0;
         cells.back().manifold_id = manifold;
       }

@@ -51,6 +51,18 @@ namespace
 
 
   template <int dim>
+  std::vector<double>
+  components(const Tensor<1, dim> &tensor)
+  {
+    std::vector<double> result;
+    for (unsigned int d = 0; d < dim; ++d)
+      result.push_back(tensor[d]);
+    return result;
+  }
+
+
+
+  template <int dim>
   Tensor<1, dim>
   traction(const Tensor<1, dim> &normal)
   {
@@ -104,10 +116,8 @@ namespace
     normal[1]                    = -1.;
     const Tensor<1, dim> on_base = traction(normal);
 
-    const Functions::ConstantFunction<dim> base_traction(
-      std::vector<double>(on_base.begin_raw(), on_base.end_raw()));
-    const Functions::ConstantFunction<dim> base_normal(
-      std::vector<double>(normal.begin_raw(), normal.end_raw()));
+    const Functions::ConstantFunction<dim> base_traction(components(on_base));
+    const Functions::ConstantFunction<dim> base_normal(components(normal));
     VectorTools::interpolate(mapping, dof_handler, Displacement<dim>(), u);
     VectorTools::interpolate(mapping, dof_handler, base_traction, t);
     VectorTools::interpolate(mapping, dof_handler, base_normal, n);
@@ -126,7 +136,7 @@ namespace
         Tensor<1, dim> n;
         n[f / 2]               = f % 2 == 0 ? -1. : 1.;
         const Tensor<1, dim> t = traction(n);
-        sides.emplace_back(std::vector<double>(t.begin_raw(), t.end_raw()));
+        sides.emplace_back(components(t));
         if (f != 2 && f != 3)
           problem.tractions[f] = &sides[f];
       }

@@ -1,0 +1,10 @@
+#include <common/program/version.h>
+
+namespace Friction
+{
+  std::string
+  version()
+  {
+    return FRICTION_VERSION;
+  }
+} // namespace Friction
