@@ -1,6 +1,8 @@
 #ifndef friction_tests_support_nested_iteration_h
 #define friction_tests_support_nested_iteration_h
 
+#include <common/compatibility.h>
+#include <common/discretization/discretization.h>
 #include <common/estimate/contact_estimate.h>
 #include <common/estimate/marking.h>
 #include <common/solvers/coulomb_solver.h>
@@ -8,16 +10,16 @@
 
 #include <deal.II/base/timer.h>
 
-#include <deal.II/distributed/solution_transfer.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
-#include "discretization.h"
-
 namespace Tests
 {
+  using namespace dealii;
+  using namespace Friction;
+
   /**
    * The loop over levels of the step programs, one call at a time, for tests
    * that want to look at the solution of each level, or at several solutions
@@ -122,7 +124,7 @@ namespace Tests
 
       const std::unique_ptr<Discretization<dim>> old =
         std::move(discretization);
-      parallel::distributed::SolutionTransfer<dim, VectorType> transfer(
+      Compatibility::SolutionTransfer<dim, VectorType> transfer(
         old->dof_handler);
       const double lift_of_displacement = lift_above_rounding(displacement);
       const double lift_of_tractions    = lift_above_rounding(tractions);

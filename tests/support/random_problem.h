@@ -1,6 +1,7 @@
 #ifndef friction_tests_support_random_problem_h
 #define friction_tests_support_random_problem_h
 
+#include <common/discretization/discretization.h>
 #include <common/multigrid/truncation.h>
 
 #include <deal.II/base/mpi.h>
@@ -8,49 +9,13 @@
 #include <Eigen/Dense>
 
 #include <numeric>
-#include <random>
 
-#include <tests/support/check_below.h>
-#include <tests/support/discretization.h>
+#include <tests/support/random.h>
 
 namespace Tests
 {
-  /**
-   * Random numbers that are the same on every machine. The distributions of the
-   * standard library are not, its generators are.
-   */
-  class Random
-  {
-  public:
-    explicit Random(const unsigned int seed)
-      : generator(seed)
-    {}
-
-    /** Uniform in [low, high). */
-    double
-    operator()(const double low, const double high)
-    {
-      return low + (high - low) * (generator() / 4294967296.);
-    }
-
-    bool
-    chance(const double probability)
-    {
-      return (*this)(0., 1.) < probability;
-    }
-
-    /** 0, ..., n-1. */
-    unsigned int
-    below(const unsigned int n)
-    {
-      return generator() % n;
-    }
-
-  private:
-    std::mt19937 generator;
-  };
-
-
+  using namespace dealii;
+  using namespace Friction;
 
   /**
    * A block on a plane, its top pushed down and sideways. Contact may happen
