@@ -1,0 +1,83 @@
+# How everything here is compiled and linked: with the flags that deal.II was
+# configured with, since its headers want the same language and its classes the
+# same layout, but for what is a matter of taste or of the machine that built it.
+# To be included after project().
+#
+#   Debug     deal.II's assertions, and -O1: its own -O0 makes tests five times
+#             slower, and finds nothing more
+#   Release   deal.II's optimisation
+#
+# Debug information of whole variables makes libraries of 100 MB and a third of
+# the time that compiling takes, and is there if asked for.
+include(CheckCXXCompilerFlag)
+include(CheckCXXSourceCompiles)
+
+option(FRICTION_DEBUG_INFO
+  "Full debug information, for a debugger or a profiler" OFF)
+set(FRICTION_SANITIZERS "" CACHE STRING
+  "Sanitizers to compile and link with, separated by commas: address,undefined")
+
+# Flags without those that match a pattern.
+function(friction_drop_flags variable pattern)
+  separate_arguments(_flags UNIX_COMMAND "${${variable}}")
+  list(FILTER _flags EXCLUDE REGEX ${pattern})
+  list(JOIN _flags " " _flags)
+  set(${variable} "${_flags}" PARENT_SCOPE)
+endfunction()
+
+foreach(_variable DEAL_II_CXX_FLAGS DEAL_II_CXX_FLAGS_DEBUG DEAL_II_CXX_FLAGS_RELEASE)
+  friction_drop_flags(${_variable} "^-g|^-O[0-9s]?g?$|compress-debug-sections|prefix-map")
+endforeach()
+# Where a sanitizer or valgrind finds something, they say in which line.
+string(APPEND DEAL_II_CXX_FLAGS_DEBUG " -O1 -g1")
+string(APPEND DEAL_II_CXX_FLAGS_RELEASE " -O2")
+if(FRICTION_DEBUG_INFO)
+  string(APPEND DEAL_II_CXX_FLAGS " -g")
+  friction_drop_flags(DEAL_II_CXX_FLAGS_DEBUG "^-g1$")
+endif()
+
+if(FRICTION_SANITIZERS)
+  set(_sanitizers
+    "-fsanitize=${FRICTION_SANITIZERS} -fno-sanitize-recover=undefined -fno-omit-frame-pointer")
+  # Both look into the same memory, and only one of them can be there.
+  friction_drop_flags(DEAL_II_CXX_FLAGS "FORTIFY_SOURCE")
+  string(APPEND DEAL_II_CXX_FLAGS " ${_sanitizers}")
+  string(APPEND DEAL_II_LINKER_FLAGS " ${_sanitizers}")
+endif()
+
+# Another compiler than deal.II's may not know all of its flags.
+if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  foreach(_variable DEAL_II_WARNING_FLAGS DEAL_II_CXX_FLAGS
+      DEAL_II_CXX_FLAGS_DEBUG DEAL_II_CXX_FLAGS_RELEASE)
+    separate_arguments(_flags UNIX_COMMAND "${${_variable}}")
+    set(_known)
+    foreach(_flag ${_flags})
+      string(MAKE_C_IDENTIFIER "FRICTION_FLAG${_flag}" _name)
+      set(CMAKE_REQUIRED_FLAGS "-Werror")
+      set(CMAKE_REQUIRED_QUIET TRUE)
+      check_cxx_compiler_flag(${_flag} ${_name})
+      unset(CMAKE_REQUIRED_FLAGS)
+      if(${_name})
+        list(APPEND _known ${_flag})
+      endif()
+    endforeach()
+    list(JOIN _known " " ${_variable})
+  endforeach()
+endif()
+
+# A distribution may have linked deal.II with a linker that it does not install
+# along with it.
+if(DEAL_II_LINKER_FLAGS MATCHES "-fuse-ld=([^ ]+)")
+  set(_linker ${CMAKE_MATCH_1})
+  set(CMAKE_REQUIRED_LINK_OPTIONS -fuse-ld=${_linker})
+  set(CMAKE_REQUIRED_QUIET TRUE)
+  check_cxx_source_compiles("int main() {}" FRICTION_LINKER_${_linker})
+  unset(CMAKE_REQUIRED_LINK_OPTIONS)
+  if(NOT FRICTION_LINKER_${_linker})
+    message(STATUS
+      "deal.II was linked with ${_linker}, which does not work here; going on "
+      "with the compiler's own linker.")
+    friction_drop_flags(DEAL_II_LINKER_FLAGS "^-fuse-ld=")
+  endif()
+endif()
+unset(CMAKE_REQUIRED_QUIET)

@@ -1,0 +1,40 @@
+# What cmake --install puts in place, below one prefix: both step programs, their
+# scenes, the library with its headers, and what find_package(friction) needs. Other
+# programs then link with friction::friction and include <common/...> as the steps
+# do.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(_package ${CMAKE_INSTALL_LIBDIR}/cmake/friction)
+set(_headers ${CMAKE_INSTALL_INCLUDEDIR}/friction)
+
+# Programs find the library where they are installed, wherever that is.
+file(RELATIVE_PATH _to_library
+  ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
+set_target_properties(step-friction-2d step-friction-3d PROPERTIES
+  INSTALL_RPATH "$ORIGIN/${_to_library}")
+set_target_properties(friction PROPERTIES
+  VERSION ${PROJECT_VERSION}
+  SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+
+install(TARGETS step-friction-2d step-friction-3d)
+install(TARGETS friction EXPORT friction-targets
+  INCLUDES DESTINATION ${_headers})
+install(DIRECTORY common DESTINATION ${_headers}
+  FILES_MATCHING PATTERN "*.h" PATTERN cmake EXCLUDE)
+foreach(_step step-friction-2d step-friction-3d)
+  install(DIRECTORY ${_step}/scenes
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/friction/${_step})
+endforeach()
+
+install(EXPORT friction-targets NAMESPACE friction:: DESTINATION ${_package})
+configure_package_config_file(common/cmake/friction-config.cmake.in
+  ${PROJECT_BINARY_DIR}/friction-config.cmake
+  INSTALL_DESTINATION ${_package})
+write_basic_package_version_file(
+  ${PROJECT_BINARY_DIR}/friction-config-version.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES
+  ${PROJECT_BINARY_DIR}/friction-config.cmake
+  ${PROJECT_BINARY_DIR}/friction-config-version.cmake
+  DESTINATION ${_package})
