@@ -8,7 +8,8 @@
 #include <iostream>
 #include <sstream>
 
-#include "../support/check_below.h"
+#include <tests/support/check.h>
+
 
 using namespace Benchmark;
 

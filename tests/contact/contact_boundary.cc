@@ -13,6 +13,7 @@
 
 #include <iostream>
 
+#include <tests/support/check.h>
 #include <tests/support/random_problem.h>
 
 using namespace Tests;

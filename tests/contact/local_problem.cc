@@ -15,14 +15,19 @@
 
 #include <common/contact/local_problem.h>
 
+#include <deal.II/base/numbers.h>
+
 #include <array>
 #include <cmath>
 #include <iostream>
 #include <limits>
 #include <random>
 
-#include <tests/support/random_problem.h>
+#include <tests/support/check.h>
+#include <tests/support/random.h>
 
+using namespace dealii;
+using namespace Friction;
 using namespace Tests;
 
 namespace

@@ -22,6 +22,8 @@
 
 #include <common/contact/local_problem.h>
 
+#include <deal.II/base/numbers.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,8 +32,11 @@
 #include <limits>
 #include <random>
 
-#include <tests/support/random_problem.h>
+#include <tests/support/check.h>
+#include <tests/support/random.h>
 
+using namespace dealii;
+using namespace Friction;
 using namespace Tests;
 
 namespace

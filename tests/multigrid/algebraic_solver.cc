@@ -34,6 +34,8 @@
 #include <fstream>
 #include <string>
 
+#include <tests/support/check.h>
+
 using namespace dealii;
 using namespace Friction;
 
@@ -52,6 +54,8 @@ namespace
       Utilities::MPI::min(good ? 1 : 0, MPI_COMM_WORLD) == 1;
     if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
       output << (all_good ? "ok      " : "FAILED  ") << what << std::endl;
+    if (!all_good)
+      Tests::FailedChecks::add();
   }
 
 

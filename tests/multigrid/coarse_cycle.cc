@@ -26,6 +26,7 @@
 #include <iostream>
 #include <limits>
 
+#include <tests/support/check.h>
 #include <tests/support/random_problem.h>
 
 using namespace Tests;

@@ -28,6 +28,7 @@
 #include <iostream>
 #include <map>
 
+#include <tests/support/check.h>
 #include <tests/support/random_problem.h>
 
 using namespace Tests;

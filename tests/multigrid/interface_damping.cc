@@ -20,6 +20,7 @@
 
 #include <iostream>
 
+#include <tests/support/check.h>
 #include <tests/support/random_problem.h>
 
 using namespace Tests;

@@ -4,6 +4,8 @@
 
 #include <iostream>
 
+#include <tests/support/check.h>
+
 #include "../reference/scenes.h"
 #include "../support/nested_iteration.h"
 

@@ -6,6 +6,8 @@
 #include <functional>
 #include <iostream>
 
+#include <tests/support/check.h>
+
 #include "../reference/scenes_3d.h"
 #include "../support/nested_iteration.h"
 

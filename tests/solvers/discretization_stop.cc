@@ -6,7 +6,8 @@
 
 #include <iostream>
 
-#include "../support/check_below.h"
+#include <tests/support/check.h>
+
 #include "../support/nested_iteration.h"
 
 using namespace Tests;

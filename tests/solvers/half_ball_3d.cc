@@ -20,7 +20,8 @@
 #include <cmath>
 #include <iostream>
 
-#include "../support/check_below.h"
+#include <tests/support/check.h>
+
 #include "../support/nested_iteration.h"
 
 using namespace Tests;

@@ -4,6 +4,8 @@
 #include <iomanip>
 #include <iostream>
 
+#include <tests/support/check.h>
+
 #include "../reference/half_plane_contact.h"
 #include "../support/nested_iteration.h"
 

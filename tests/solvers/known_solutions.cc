@@ -5,6 +5,8 @@
 #include <iomanip>
 #include <iostream>
 
+#include <tests/support/check.h>
+
 #include "../reference/scenes.h"
 #include "../support/nested_iteration.h"
 

@@ -7,6 +7,8 @@
 #include <iomanip>
 #include <iostream>
 
+#include <tests/support/check.h>
+
 #include "../reference/scenes_3d.h"
 #include "../support/nested_iteration.h"
 

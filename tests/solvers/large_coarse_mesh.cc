@@ -10,7 +10,8 @@
 #include <iomanip>
 #include <iostream>
 
-#include "../support/check_below.h"
+#include <tests/support/check.h>
+
 #include "../support/nested_iteration.h"
 
 using namespace Tests;

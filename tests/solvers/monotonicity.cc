@@ -19,7 +19,8 @@
 
 #include <iostream>
 
-#include "../support/check_below.h"
+#include <tests/support/check.h>
+
 #include "../support/nested_iteration.h"
 #include "../support/random_problem.h"
 

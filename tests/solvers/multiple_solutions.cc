@@ -18,7 +18,8 @@
 
 #include <iostream>
 
-#include "../support/check_below.h"
+#include <tests/support/check.h>
+
 #include "../support/random_problem.h"
 
 using namespace Tests;

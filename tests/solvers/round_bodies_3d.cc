@@ -8,8 +8,9 @@
 #include <iostream>
 #include <map>
 
+#include <tests/support/check.h>
+
 #include "../reference/dense_contact_3d.h"
-#include "../support/check_below.h"
 #include "../support/nested_iteration.h"
 
 using namespace Tests;

@@ -11,6 +11,8 @@
 #include <map>
 #include <vector>
 
+#include <tests/support/check.h>
+
 #include "../support/nested_iteration.h"
 
 using namespace Tests;

@@ -1,0 +1,64 @@
+#ifndef friction_tests_support_check_h
+#define friction_tests_support_check_h
+
+#include <cstdlib>
+#include <iostream>
+#include <sstream>
+#include <string>
+
+namespace Tests
+{
+  /**
+   * The checks of this program that have failed. A program with a failed check
+   * ends with exit status 1, whatever its main() returns, so that nothing
+   * depends on somebody comparing its output.
+   */
+  class FailedChecks
+  {
+  public:
+    static void
+    add()
+    {
+      static const FailedChecks failed;
+    }
+
+  private:
+    FailedChecks() = default;
+
+    // Runs when the program ends, after MPI has been shut down. The rest of
+    // that, which would return the status of main(), is not waited for.
+    ~FailedChecks()
+    {
+      std::cout.flush();
+      std::cerr.flush();
+      std::_Exit(EXIT_FAILURE);
+    }
+  };
+
+
+
+  /** Prints the outcome of a check: only that, so that no digits are compared.
+   */
+  inline void
+  check(const bool condition, const std::string &what)
+  {
+    std::cout << (condition ? "ok      " : "FAILED  ") << what << std::endl;
+    if (!condition)
+      FailedChecks::add();
+  }
+
+
+
+  /** Prints the outcome of a check that a value is not larger than a bound;
+   * the value itself only if it is. */
+  inline void
+  check_below(const double value, const double bound, const std::string &what)
+  {
+    std::ostringstream how_much;
+    if (!(value <= bound))
+      how_much << ": " << value << " instead of " << bound;
+    check(value <= bound, what + how_much.str());
+  }
+} // namespace Tests
+
+#endif
