@@ -12,10 +12,6 @@ failures=0
 messages=$(mktemp) || exit 1
 trap 'rm -f "$messages"' EXIT
 
-# Open MPI: under root, and with more processes than cores.
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-export OMPI_MCA_rmaps_base_oversubscribe=1
-
 # expect MODE STATUS MESSAGES ARGUMENTS...: so many messages of our own.
 expect()
 {

@@ -13,10 +13,8 @@ trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 failures=0
 
-# Open MPI: under root, with more processes than cores, and without a daemon
-# for a single process, which would take time and write messages of its own.
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-export OMPI_MCA_rmaps_base_oversubscribe=1
+# Open MPI without a daemon for a single process, which would take time and write
+# messages of its own.
 export OMPI_MCA_ess_singleton_isolated=1
 
 # verdict NAME PROBLEM: an empty problem is none.

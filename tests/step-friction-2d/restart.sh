@@ -22,10 +22,6 @@ trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
 failures=0
 
-# Open MPI: under root, and with more processes than cores.
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-export OMPI_MCA_rmaps_base_oversubscribe=1
-
 # A file that grows beyond all measure is an error, too; in blocks of 512 bytes.
 ulimit -f 1000000
 

@@ -1,14 +1,95 @@
-# deal.II's own tests of a folder. Those on several processes run with Open MPI
-# under root, too, and with more processes than a small machine has cores.
-macro(pickup_tests)
+# What ctest -L can choose from. Each test has one of these labels, and the name of
+# its folder:
+#
+#   quick    the mathematics of every part, and the scenes on small meshes
+#   full     what takes longer: solvers on finer meshes, restarts, bad input
+#   studies  figures, charts and benchmarks, on tiny meshes
+#   pages    prose, commands of pages, pages in a browser
+#
+# deal.II itself sets a property LABEL, which ctest does not know.
+
+# Open MPI starts under root as well, and more processes than there are cores.
+# The last word is for Open MPI 5, the one before it for earlier ones.
+set(FRICTION_MPI_ENVIRONMENT
+  OMPI_ALLOW_RUN_AS_ROOT=1
+  OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+  OMPI_MCA_rmaps_base_oversubscribe=1
+  PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe)
+
+# label_test(name LABEL quick|full|studies|pages [PROCESSES n]): a test that was
+# added already. Its folder is the part of its name before the first slash.
+function(label_test name)
+  cmake_parse_arguments(_test "" "LABEL;PROCESSES" "" ${ARGN})
+  if(NOT _test_PROCESSES)
+    set(_test_PROCESSES 1)
+  endif()
+  string(REGEX REPLACE "/.*" "" _folder ${name})
+  set_tests_properties(${name} PROPERTIES
+    LABELS "${_test_LABEL};${_folder}"
+    PROCESSORS ${_test_PROCESSES}
+    TIMEOUT ${TEST_TIME_LIMIT})
+  set_property(TEST ${name} APPEND PROPERTY ENVIRONMENT
+    ${FRICTION_MPI_ENVIRONMENT})
+endfunction()
+
+# The programs of all quick tests.
+add_custom_target(tests-quick)
+add_dependencies(tests-quick step-friction-2d step-friction-3d)
+
+# friction_test_program(target source ...): a program that a test needs, built like
+# those of deal.II's tests.
+function(friction_test_program target)
+  friction_executable(${target} ${ARGN})
+  set_target_properties(${target} PROPERTIES
+    EXCLUDE_FROM_ALL ${FRICTION_TESTS_ON_DEMAND})
+  if(NOT "OPTIMISED" IN_LIST ARGN)
+    add_dependencies(tests-quick ${target})
+  endif()
+endfunction()
+
+# pickup_tests([FULL name ...]): deal.II's tests of a folder. Those that are named
+# have the label full, the others quick. Their programs are built with all others,
+# so that ctest only runs them.
+function(pickup_tests)
+  cmake_parse_arguments(_pickup "" "" "FULL" ${ARGN})
   deal_ii_pickup_tests()
+
   get_property(_tests DIRECTORY PROPERTY TESTS)
   foreach(_test ${_tests})
-    if(_test MATCHES "mpirun=")
-      set_property(TEST ${_test} APPEND PROPERTY ENVIRONMENT
-        "OMPI_ALLOW_RUN_AS_ROOT=1"
-        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1"
-        "OMPI_MCA_rmaps_base_oversubscribe=1")
+    string(REGEX REPLACE "^[^/]*/([^.]*)\\..*" "\\1" _name ${_test})
+    set(_label quick)
+    if(_name IN_LIST _pickup_FULL)
+      set(_label full)
+      list(APPEND _found ${_name})
+    endif()
+    set(_processes 1)
+    if(_test MATCHES "mpirun=([0-9]+)")
+      set(_processes ${CMAKE_MATCH_1})
+    endif()
+    label_test(${_test} LABEL ${_label} PROCESSES ${_processes})
+  endforeach()
+  foreach(_name ${_pickup_FULL})
+    if(NOT _name IN_LIST _found)
+      message(FATAL_ERROR "There is no test ${_name} in ${CMAKE_CURRENT_SOURCE_DIR}.")
     endif()
   endforeach()
-endmacro()
+
+  get_property(_targets DIRECTORY PROPERTY BUILDSYSTEM_TARGETS)
+  foreach(_target ${_targets})
+    get_target_property(_type ${_target} TYPE)
+    if(_type STREQUAL "EXECUTABLE")
+      set_target_properties(${_target} PROPERTIES
+        EXCLUDE_FROM_ALL ${FRICTION_TESTS_ON_DEMAND})
+      friction_precompile(${_target} friction)
+      string(REGEX REPLACE "^[^.]*\\.([^.]*)\\..*" "\\1" _name ${_target})
+      if(NOT _name IN_LIST _pickup_FULL)
+        add_dependencies(tests-quick ${_target})
+      endif()
+      # A file of deal.II 9.4 that makes a test start again from compiling if
+      # ctest was interrupted: it would be compiled anew in the first run.
+      get_target_property(_sources ${_target} SOURCES)
+      list(FILTER _sources EXCLUDE REGEX "interrupt_guard.cc$")
+      set_target_properties(${_target} PROPERTIES SOURCES "${_sources}")
+    endif()
+  endforeach()
+endfunction()

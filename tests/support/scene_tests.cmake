@@ -1,14 +1,3 @@
-# Compares results of one process with those of several.
-if(NOT TARGET compare_histories)
-  add_executable(compare_histories EXCLUDE_FROM_ALL
-    ${CMAKE_SOURCE_DIR}/tests/support/compare_histories.cc)
-  deal_ii_setup_target(compare_histories)
-  add_test(NAME support/compare_histories.build
-    COMMAND ${CMAKE_COMMAND} --build ${CMAKE_BINARY_DIR} --target compare_histories)
-  set_tests_properties(support/compare_histories.build PROPERTIES
-    LABELS support FIXTURES_SETUP compare_histories TIMEOUT ${TEST_TIME_LIMIT})
-endif()
-
 # Every shipped scene of a step program runs in a test, on one process and on
 # several: NAME.prm.in is the shipped file, put in place of @scene_NAME@, and
 # after it what shortens the run.
@@ -27,18 +16,30 @@ function(add_scene_tests PROGRAM BOUND)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${_scene})
     configure_file(${_name}.prm.in ${_name}.prm @ONLY)
 
-    add_test(NAME ${PROGRAM}/${_name}
-      COMMAND sh ${CMAKE_SOURCE_DIR}/tests/support/scene.sh
-        $<TARGET_FILE:${PROGRAM}>
-        ${CMAKE_CURRENT_BINARY_DIR}/${_name}.prm
-        ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.output
-        ${NUMDIFF_EXECUTABLE}
-        ${BOUND}
-        $<TARGET_FILE:compare_histories>
-        ${DEAL_II_MPIEXEC} ${DEAL_II_MPIEXEC_NUMPROC_FLAG}
-        1 2 4)
-    set_tests_properties(${PROGRAM}/${_name} PROPERTIES
-      LABELS ${PROGRAM} FIXTURES_REQUIRED compare_histories
-      TIMEOUT ${TEST_TIME_LIMIT})
+    foreach(_n 1 2 4)
+      set(_test ${PROGRAM}/${_name})
+      if(_n GREATER 1)
+        set(_test ${_test}.mpirun=${_n})
+      endif()
+      add_test(NAME ${_test}
+        COMMAND sh ${CMAKE_SOURCE_DIR}/tests/support/scene.sh
+          $<TARGET_FILE:${PROGRAM}>
+          ${CMAKE_CURRENT_BINARY_DIR}/${_name}.prm
+          ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.output
+          ${CMAKE_CURRENT_BINARY_DIR}/${_name}
+          ${_n}
+          ${BOUND}
+          ${NUMDIFF_EXECUTABLE}
+          $<TARGET_FILE:compare_histories>
+          ${DEAL_II_MPIEXEC} ${DEAL_II_MPIEXEC_NUMPROC_FLAG})
+      label_test(${_test} LABEL quick PROCESSES ${_n})
+      if(_n EQUAL 1)
+        set_tests_properties(${_test} PROPERTIES
+          FIXTURES_SETUP ${PROGRAM}.${_name})
+      else()
+        set_tests_properties(${_test} PROPERTIES
+          FIXTURES_REQUIRED ${PROGRAM}.${_name})
+      endif()
+    endforeach()
   endforeach()
 endfunction()

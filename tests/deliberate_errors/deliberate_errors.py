@@ -1,0 +1,150 @@
+"""Ten deliberate errors in ten parts of the method, one after the other, each of a
+kind that gives plausible pictures; which quick tests notice which.
+
+Works on a copy of the sources with a build tree of its own, so that the one at hand
+stays as it is. The result is a table in Markdown.
+
+Usage: deliberate_errors.py SOURCES SCRATCH TABLE [NAME ...]
+"""
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+# What it is, the file, what stands there, and what stands there instead.
+ERRORS = [
+    ("friction drives", "common/solvers/tresca_functional.cc",
+     "sum += problem.friction_coefficient * state.normal_force(p) *",
+     "sum -= problem.friction_coefficient * state.normal_force(p) *",
+     "the sign of the friction term in the energy"),
+    ("hanging row lost", "common/contact/contact_boundary.cc",
+     "master.second * measure;",
+     "0. * measure;",
+     "hanging nodes keep their measure, instead of handing it on to their masters"),
+    ("truncation in P", "common/multigrid/level_matrices.cc",
+     "double *target = B.block(begin + position[p->node]);\n              for",
+     "double *target = B.block(begin + position[p->node]);\n"
+     "              const unsigned int parent =\n"
+     "                p->node < level.n_nodes() ? level.leaf_node(p->node) :\n"
+     "                                            numbers::invalid_unsigned_int;\n"
+     "              if (parent != numbers::invalid_unsigned_int &&\n"
+     "                  !truncation.is_identity(parent))\n"
+     "                continue;\n"
+     "              for",
+     "truncated nodes inherit nothing from the finer level"),
+    ("restriction", "common/multigrid/coarse_cycle.cc",
+     "sum[d] += child->weight * finer[dim * child->node + d];",
+     "sum[d] += (child->weight < 1. ? .5 : 1.) * finer[dim * child->node + d];",
+     "residuals in the middle of faces and cells are restricted with weight 1/2"),
+    ("normal forces lag", "common/multigrid/monotone_smoother.cc",
+     "const bool update = what.update_normal_forces &&",
+     "const bool update = false && what.update_normal_forces &&",
+     "the leading relaxation never updates the normal forces"),
+    ("stale level matrix", "common/multigrid/level_matrices.cc",
+     "mark(i, j);\n            mark(j, i);",
+     "mark(i, j);",
+     "a change of truncation is not seen by the rows of neighbours"),
+    ("local reduction", "common/solvers/tresca_functional.cc",
+     "values = sum_over_processes(values, problem.communicator());",
+     "",
+     "each process searches along the line for itself"),
+    ("unit of the certificate", "common/contact/certificate.cc",
+     "std::min(std::sqrt(deviation), slip_norm / length_scale));",
+     "std::min(std::sqrt(deviation), slip_norm));",
+     "slip is a length instead of a number"),
+    ("frame", "common/multigrid/linearization.cc",
+     "add(node.frame[t]);",
+     "add(node.frame[t - 1]);",
+     "a sliding node is free in normal direction"),
+    ("level", "common/multigrid/level_matrices.cc",
+     "std::min(hierarchy.finest_level(leaf),\n"
+     "                       hierarchy.finest_level(j)) != k)",
+     "hierarchy.finest_level(leaf) != k || hierarchy.finest_level(j) != k)",
+     "couplings of nodes whose finest levels differ by one belong to no level"),
+]
+
+
+def run(command, **options):
+    return subprocess.run(command, capture_output=True, text=True, **options)
+
+
+def copy_sources(sources, copy):
+    names = run(["git", "ls-files", "-z", "--cached", "--others",
+                 "--exclude-standard"], cwd=sources, check=True).stdout
+    for name in filter(None, names.split("\0")):
+        origin = sources / name
+        if not origin.is_file():
+            continue
+        target = copy / name
+        if target.is_file() and target.read_bytes() == origin.read_bytes():
+            continue
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(origin, target)
+
+
+def quick_tests(build):
+    """Names of tests that failed, and how many there were; None if it does not
+    even compile."""
+    made = run(["cmake", "--build", str(build), "--target", "tests-quick", "-j2"])
+    if made.returncode != 0:
+        print(made.stdout[-3000:], made.stderr[-3000:], file=sys.stderr)
+        return None, 0
+    result = run(["ctest", "-L", "quick", "-j2", "--timeout", "120"], cwd=build)
+    outcome = re.findall(r"^ *\d+/(\d+) Test +#\d+: (\S+) \.*.*?(Passed|\*\*\*)",
+                         result.stdout, re.MULTILINE)
+    return ([name for _, name, how in outcome if how != "Passed"], len(outcome))
+
+
+def main():
+    sources, scratch, table = map(pathlib.Path, sys.argv[1:4])
+    chosen = sys.argv[4:]
+    copy, build = scratch / "sources", scratch / "build"
+    copy_sources(sources, copy)
+    subprocess.run(["cmake", "-S", str(copy), "-B", str(build),
+                    "-DCMAKE_BUILD_TYPE=Debug"], check=True,
+                   stdout=subprocess.DEVNULL)
+    failed, n_tests = quick_tests(build)
+    if failed is None or failed or n_tests == 0:
+        print("Without any error these fail:", failed, file=sys.stderr)
+        return 1
+    rows, unnoticed = [], []
+    for name, file, right, wrong, what in ERRORS:
+        if chosen and name not in chosen:
+            continue
+        path = copy / file
+        text = path.read_text()
+        if text.count(right) != 1:
+            print(f"{name}: {file} has {text.count(right)} places that read\n"
+                  f"{right}", file=sys.stderr)
+            return 1
+        path.write_text(text.replace(right, wrong))
+        try:
+            failed, _ = quick_tests(build)
+        finally:
+            path.write_text(text)
+        if failed is None:
+            print(f"{name}: cannot be compiled", file=sys.stderr)
+            return 1
+        if not failed:
+            unnoticed.append(name)
+        tests = ", ".join(f"`{test}`" for test in failed[:6])
+        if len(failed) > 6:
+            tests += f" and {len(failed) - 6} more"
+        rows.append(f"| {name} | {what} (`{file}`) | {tests or '**none**'} |")
+        print(rows[-1], flush=True)
+    if not chosen:
+        text = table.read_text()
+        begin, end = "<!-- table of errors -->\n", "<!-- end of the table -->"
+        head, rest = text.split(begin)
+        table.write_text(
+            head + begin + "| error | what it does | noticed by |\n|---|---|---|\n"
+            + "\n".join(rows) + "\n" + end + rest.split(end)[1])
+    if unnoticed:
+        print("FAILED: not noticed:", ", ".join(unnoticed), file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,50 @@
+#!/bin/sh
+# What is installed works on its own: a program of twenty lines is built against it
+# in an empty place and solves a scene, and the installed step program says which
+# version it is and solves the same scene with the same result.
+#
+# Usage: install.sh CMAKE BUILD_TREE PROGRAM_SOURCES CXX_COMPILER VERSION
+cmake=$1
+build=$2
+sources=$3
+compiler=$4
+version=$5
+
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+
+fail() {
+  echo "FAILED: $*"
+  exit 1
+}
+
+# Moved afterwards, so that nothing can depend on where it was.
+"$cmake" --install "$build" --prefix "$work/first" >"$work/log" 2>&1 ||
+  { cat "$work/log"; fail "nothing can be installed"; }
+mv "$work/first" "$work/prefix"
+
+cp -r "$sources" "$work/program"
+{
+  "$cmake" -S "$work/program" -B "$work/build" \
+    -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_CXX_COMPILER="$compiler" &&
+    "$cmake" --build "$work/build"
+} >"$work/log" 2>&1 || { cat "$work/log"; fail "the program cannot be built"; }
+grep -q "warning:" "$work/log" && { cat "$work/log"; fail "there are warnings"; }
+
+scene=$work/prefix/share/friction/step-friction-2d/scenes/block.prm
+outside=$("$work/build/block" "$scene") || fail "the program does not run"
+echo "$outside"
+
+step=$work/prefix/bin/step-friction-2d
+said=$("$step" --version) || fail "the installed step program does not run"
+echo "$said"
+case $said in
+"step-friction-2d $version "*) ;;
+*) fail "--version does not begin with step-friction-2d $version" ;;
+esac
+
+# The third to fifth columns of the only row: dofs, contact, sticky.
+row=$(cd "$work" && "$step" "$scene" "Refinement/Initial refinements=4" \
+  Refinement/Levels=0 Output/Times=false | awk '$1 == 0 {print $4, $5}')
+[ "$outside" = "${row% *} nodes in contact, ${row#* } of them stick, solved" ] ||
+  fail "the step program finds $row"

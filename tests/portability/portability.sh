@@ -1,0 +1,87 @@
+#!/usr/bin/env bash
+# What works where: makes a bare root of a Debian suite, runs there what README.md
+# says, word for word, compares the tables of two scenes with the expected ones,
+# runs the quick tests, and replaces one row of doc/portability.md.
+#
+# Usage: portability.sh SOURCES ROOTS ROW
+#   SOURCES  a checkout of this repository; what is in its work tree is tested
+#   ROOTS    a folder for the roots; those that are there already are used again
+#   ROW      suite:compiler, for example trixie:g++ or bookworm:clang++-14, or
+#            headers:TAG for the compiler's syntax check of all sources against the
+#            headers of a release of deal.II of which there is no package
+#
+# Wants to be root, debootstrap, and for headers git and DEALII_REPOSITORY, where
+# deal.II's sources are (by default their public repository).
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+sources=$(cd "$1" && pwd)
+roots=$2
+row=$3
+suite=${row%%:*}
+compiler=${row#*:}
+table=$sources/doc/portability.md
+tag=
+if [ "$suite" = headers ]; then
+  suite=sid
+  tag=$compiler
+  compiler=g++
+fi
+
+[ "$(id -u)" -eq 0 ] || { echo "Roots need the rights of root." >&2; exit 1; }
+for program in debootstrap tar; do
+  command -v $program >/dev/null || { echo "$program is needed." >&2; exit 1; }
+done
+mkdir -p "$roots"
+roots=$(cd "$roots" && pwd)
+root=$roots/$suite
+
+if [ ! -e "$root/etc/debian_version" ]; then
+  debootstrap --variant=minbase --include=ca-certificates "$suite" "$root"
+fi
+# Packages expect these to be there; without /sys hwloc complains in each program.
+for mount in proc sys dev/pts; do
+  mountpoint -q "$root/$mount" || mount --bind "/$mount" "$root/$mount"
+done
+unmount() {
+  for mount in dev/pts sys proc; do
+    umount "$root/$mount" 2>/dev/null || umount -l "$root/$mount" || true
+  done
+}
+trap unmount EXIT
+echo "127.0.0.1 localhost" >"$root/etc/hosts"
+cp /etc/resolv.conf "$root/etc/resolv.conf" 2>/dev/null || true
+# Unstable is never up to date when a mirror is a day old.
+echo 'Acquire::Check-Valid-Until "false";' >"$root/etc/apt/apt.conf.d/99friction"
+
+# The work tree, without what is built in it.
+rm -rf "$root/friction"
+mkdir "$root/friction"
+(cd "$sources" && git ls-files -z --cached --others --exclude-standard |
+  xargs -0 ls -d 2>/dev/null | tar -cf - -T -) | tar -xf - -C "$root/friction"
+
+if [ -n "$tag" ]; then
+  rm -rf "$root/dealii"
+  git clone --quiet --depth 1 --branch "$tag" \
+    "${DEALII_REPOSITORY:-https://github.com/dealii/dealii}" "$root/dealii"
+fi
+
+result=$root/friction/row
+chroot "$root" /usr/bin/env -i HOME=/root LC_ALL=C.UTF-8 \
+  PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
+  DEBIAN_FRONTEND=noninteractive \
+  bash /friction/tests/portability/in_root.sh "$compiler" "$tag" /friction/row ||
+  echo "in_root.sh ended with an error" >&2
+[ -s "$result" ] || { echo "There is no result." >&2; exit 1; }
+cat "$result"
+
+# The row takes the place of the one that begins with the same two cells.
+awk -v row="$(cat "$result")" '
+  function key(line, cell) {split(line, cell, "|"); return cell[2] cell[3]}
+  BEGIN {split(row, wanted, "|"); split(wanted[3], name, " ")}
+  /^\| / {
+    split($0, cell, "|")
+    split(cell[3], its, " ")
+    if (cell[2] == wanted[2] && its[1] == name[1]) {print row; done = 1; next}
+  }
+  /^<!-- end of the table -->/ && !done {print row}
+  {print}' "$table" >"$table.part" && mv "$table.part" "$table"

@@ -1,0 +1,60 @@
+"""The flags that win, as the compiler sees them.
+
+In a debug tree everything has deal.II's assertions and is optimised all the same,
+but for the programs that studies run, which are those of release mode. In release
+mode nothing is left of either.
+
+Usage: check_compile_commands.py compile_commands.json Debug|Release SOURCES
+"""
+import json
+import shlex
+import sys
+
+
+def flags_of(command):
+    """The last optimisation level, the debug level, and what is defined."""
+    optimisation, debug, defined = "-O0", "-g0", set()
+    for word in shlex.split(command):
+        if word.startswith("-O"):
+            optimisation = word
+        elif word.startswith("-g") and not word.startswith("-gsplit"):
+            debug = word
+        elif word.startswith("-D"):
+            defined.add(word[2:].split("=")[0])
+    return optimisation, debug, defined
+
+
+def main():
+    path, build_type, sources = sys.argv[1:]
+    with open(path) as file:
+        entries = [entry for entry in json.load(file)
+                   if entry["file"].startswith(sources + "/")
+                   and entry["file"].endswith(".cc")]
+    wrong, kinds = [], {"with assertions": 0, "optimised": 0}
+    for entry in entries:
+        optimisation, debug, defined = flags_of(entry["command"])
+        optimised = build_type == "Release" or "optimised" in entry["output"] \
+            or "benchmark-" in entry["output"]
+        kinds["optimised" if optimised else "with assertions"] += 1
+        if optimised:
+            good = (optimisation == "-O2" and "DEBUG" not in defined)
+        else:
+            good = optimisation in ("-O1", "-Og") and "DEBUG" in defined \
+                and "NDEBUG" not in defined
+        if not good:
+            wrong.append(f"{entry['output']}: {optimisation} {debug}, "
+                         + ("" if "DEBUG" in defined else "no ") + "assertions")
+    for kind, count in kinds.items():
+        print(f"{count} files {kind}")
+    # A list of nothing is right in every respect.
+    if kinds["optimised"] < 50 or (
+            build_type == "Debug" and kinds["with assertions"] < 100):
+        wrong.append("so few files cannot be all")
+    if wrong:
+        print("FAILED:", *wrong, sep="\n  ")
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
