@@ -65,19 +65,35 @@ if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   endforeach()
 endif()
 
-# A distribution may have linked deal.II with a linker that it does not install
-# along with it.
+# A distribution may have linked deal.II with a linker that it does not install along
+# with it. Besides, deal.II asks for some two hundred libraries: mold links a program
+# with them in half a second, gold in one or two, and GNU ld in a minute, unless it is
+# told not to find out which of them are needed.
+set(_recorded)
 if(DEAL_II_LINKER_FLAGS MATCHES "-fuse-ld=([^ ]+)")
-  set(_linker ${CMAKE_MATCH_1})
-  set(CMAKE_REQUIRED_LINK_OPTIONS -fuse-ld=${_linker})
-  set(CMAKE_REQUIRED_QUIET TRUE)
-  check_cxx_source_compiles("int main() {}" FRICTION_LINKER_${_linker})
-  unset(CMAKE_REQUIRED_LINK_OPTIONS)
-  if(NOT FRICTION_LINKER_${_linker})
-    message(STATUS
-      "deal.II was linked with ${_linker}, which does not work here; going on "
-      "with the compiler's own linker.")
-    friction_drop_flags(DEAL_II_LINKER_FLAGS "^-fuse-ld=")
-  endif()
+  set(_recorded ${CMAKE_MATCH_1})
+  friction_drop_flags(DEAL_II_LINKER_FLAGS "^-fuse-ld=")
 endif()
+set(CMAKE_REQUIRED_QUIET TRUE)
+set(_linkers mold lld ${_recorded} gold)
+foreach(_linker ${_linkers})
+  set(CMAKE_REQUIRED_LINK_OPTIONS -fuse-ld=${_linker})
+  check_cxx_source_compiles("int main() {}" FRICTION_LINKER_${_linker})
+  if(NOT FRICTION_LINKER_${_linker})
+    list(REMOVE_ITEM _linkers ${_linker})
+  endif()
+endforeach()
+unset(CMAKE_REQUIRED_LINK_OPTIONS)
 unset(CMAKE_REQUIRED_QUIET)
+if(_linkers)
+  list(GET _linkers 0 _linker)
+  set(FRICTION_LINKER_FLAG -fuse-ld=${_linker})
+else()
+  set(_linker "the compiler's own")
+  set(FRICTION_LINKER_FLAG -Wl,--no-as-needed)
+endif()
+string(APPEND DEAL_II_LINKER_FLAGS " ${FRICTION_LINKER_FLAG}")
+if(_recorded AND NOT FRICTION_LINKER_${_recorded})
+  message(STATUS
+    "deal.II was linked with ${_recorded}, which does not work here; going on with ${_linker}.")
+endif()

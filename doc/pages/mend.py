@@ -24,7 +24,8 @@ REDIRECTION = """<!DOCTYPE html>
 def without_pages(folder):
     """The files of prose that have no page: their filter has failed, which
     Doxygen does not notice."""
-    prose = [sites.ROOT / "README.md", *(sites.ROOT / "doc").rglob("*.md"),
+    prose = [sites.ROOT / "README.md", sites.ROOT / "CONTRIBUTING.md",
+             *(sites.ROOT / "doc").rglob("*.md"),
              *(sites.ROOT / step / f"{step}.cc" for step in sites.STEPS)]
     names = [path.relative_to(sites.ROOT).as_posix() for path in prose]
     return [name for name in names

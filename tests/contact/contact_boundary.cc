@@ -11,6 +11,10 @@
 #include <common/contact/contact_boundary.h>
 #include <common/scene/input_error.h>
 
+#include <deal.II/base/quadrature_lib.h>
+
+#include <deal.II/fe/fe_values.h>
+
 #include <iostream>
 
 #include <tests/support/check.h>

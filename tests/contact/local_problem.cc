@@ -17,6 +17,7 @@
 
 #include <deal.II/base/numbers.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iostream>

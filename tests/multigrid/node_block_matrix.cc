@@ -15,6 +15,10 @@
 #include <common/multigrid/node_block_matrix.h>
 #include <common/multigrid/sweep_schedule.h>
 
+#include <deal.II/base/quadrature_lib.h>
+
+#include <deal.II/fe/fe_values.h>
+
 #include <Eigen/Sparse>
 
 #include <cstring>

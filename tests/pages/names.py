@@ -13,7 +13,7 @@ ENTRY = re.compile(r"([A-Z][a-z]+(?: [a-z]+)*)/([A-Z][^=/]*?)\s*(?:=\s*(.*))?$")
 PRODUCTS = {".h5", ".pvd", ".vtu", ".pvtu", ".xdmf", ".html"}
 COMMANDS = {"cmake", "ctest", "mpirun", "apt-get", "python3", "gmsh", "pvpython",
             "paraview", "bash", "sh", "step-friction-2d", "step-friction-3d"}
-CMAKE_OPTIONS = {"build", "preset", "target", "parallel"}
+CMAKE_OPTIONS = {"build", "preset", "target", "parallel", "install", "prefix"}
 # A symbol of a formula that is written as code: a letter and a short index.
 SYMBOL = re.compile(r"(?:[A-Za-z]|phi|sum)_[a-z]{1,2}$")
 PLACEHOLDER = re.compile(r"[A-Z]+$|<.*>$|\.\.\.$")
@@ -157,6 +157,7 @@ class Names:
                 if problem:
                     return problem
                 continue
+            bare = re.sub(r"^-D(?=[A-Z])", "", bare)  # a definition for CMake
             for word in re.findall(r"[^\W\d]\w*", bare):
                 if not (word in self.repository.words or SYMBOL.match(word)
                         or word in self.foreign):

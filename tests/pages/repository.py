@@ -72,7 +72,7 @@ class Repository:
             return (file != "README.md", file != "doc/start.md",
                     not file.endswith(".md"), file)
         return sorted((file for file in self.files
-                       if file == "README.md"
+                       if file in ("README.md", "CONTRIBUTING.md")
                        or re.fullmatch(r"doc/.*\.md", file)
                        or re.fullmatch(r"step-friction-\w+/doc/.*\.dox", file)),
                       key=order)

@@ -31,6 +31,9 @@ LONG_STUDIES = {
     "figures-3d": "figures/quick",
     "figures-ideas": "figures-ideas/quick",
 }
+# What no test can repeat: studies of other systems and of what the tests notice, and
+# the tests themselves.
+NO_TESTS = {"portability", "deliberate-errors", "tests-quick"}
 TIME_LIMIT = 400
 
 
@@ -124,7 +127,8 @@ def problem_of_command(command, build):
                    if word == "--target"]
         for target in targets:
             test = LONG_STUDIES.get(target)
-            if test and build.has_test(test):
+            if test and build.has_test(test) or (
+                    target in NO_TESTS and target in build.targets):
                 continue
             if not build.test_of_target(target):
                 return (f"no test builds the target '{target}'"

@@ -10,8 +10,8 @@
 #            headers:TAG for the compiler's syntax check of all sources against the
 #            headers of a release of deal.II of which there is no package
 #
-# Wants to be root, debootstrap, and for headers git and DEALII_REPOSITORY, where
-# deal.II's sources are (by default their public repository).
+# Wants to be root, debootstrap, and for headers git; DEALII_SOURCES, a folder with
+# the sources of that release, takes the place of deal.II's public repository.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 sources=$(cd "$1" && pwd)
@@ -61,8 +61,9 @@ mkdir "$root/friction"
 
 if [ -n "$tag" ]; then
   rm -rf "$root/dealii"
-  git clone --quiet --depth 1 --branch "$tag" \
-    "${DEALII_REPOSITORY:-https://github.com/dealii/dealii}" "$root/dealii"
+  [ -z "${DEALII_SOURCES:-}" ] || cp -r "$DEALII_SOURCES" "$root/dealii"
+  [ -d "$root/dealii" ] || git clone --quiet --depth 1 --branch "$tag" \
+    https://github.com/dealii/dealii "$root/dealii"
 fi
 
 result=$root/friction/row

@@ -5,6 +5,10 @@
 
 #include <common/estimate/exact_error.h>
 
+#include <deal.II/base/quadrature_lib.h>
+
+#include <deal.II/fe/fe_values.h>
+
 #include <iostream>
 
 #include <tests/support/check.h>

@@ -12,16 +12,14 @@ import sys
 
 
 def flags_of(command):
-    """The last optimisation level, the debug level, and what is defined."""
-    optimisation, debug, defined = "-O0", "-g0", set()
-    for word in shlex.split(command):
+    """The last optimisation level, what is defined, and the object file."""
+    optimisation, defined, words = "-O0", set(), shlex.split(command)
+    for word in words:
         if word.startswith("-O"):
             optimisation = word
-        elif word.startswith("-g") and not word.startswith("-gsplit"):
-            debug = word
         elif word.startswith("-D"):
             defined.add(word[2:].split("=")[0])
-    return optimisation, debug, defined
+    return optimisation, defined, words[words.index("-o") + 1]
 
 
 def main():
@@ -32,9 +30,9 @@ def main():
                    and entry["file"].endswith(".cc")]
     wrong, kinds = [], {"with assertions": 0, "optimised": 0}
     for entry in entries:
-        optimisation, debug, defined = flags_of(entry["command"])
-        optimised = build_type == "Release" or "optimised" in entry["output"] \
-            or "benchmark-" in entry["output"]
+        optimisation, defined, output = flags_of(entry["command"])
+        optimised = build_type == "Release" or "optimised" in output \
+            or "benchmark-" in output
         kinds["optimised" if optimised else "with assertions"] += 1
         if optimised:
             good = (optimisation == "-O2" and "DEBUG" not in defined)
@@ -42,7 +40,7 @@ def main():
             good = optimisation in ("-O1", "-Og") and "DEBUG" in defined \
                 and "NDEBUG" not in defined
         if not good:
-            wrong.append(f"{entry['output']}: {optimisation} {debug}, "
+            wrong.append(f"{output}: {optimisation}, "
                          + ("" if "DEBUG" in defined else "no ") + "assertions")
     for kind, count in kinds.items():
         print(f"{count} files {kind}")
