@@ -28,7 +28,8 @@ def main():
         for step in ("step-friction-2d", "step-friction-3d"):
             (root / step).mkdir()
         html.mkdir()
-        for name in ("readme", "step_friction_2d", "step_friction_3d"):
+        (root / "CONTRIBUTING.md").write_text("# How to\n")
+        for name in ("readme", "contributing", "step_friction_2d", "step_friction_3d"):
             (html / f"{name}.html").write_text('<div class="title">A page</div>')
 
         done = run(root / "doc/pages/filter.py", root / "README.md")
