@@ -31,6 +31,10 @@ endforeach()
 # Where a sanitizer or valgrind finds something, they say in which line.
 string(APPEND DEAL_II_CXX_FLAGS_DEBUG " -O1 -g1")
 string(APPEND DEAL_II_CXX_FLAGS_RELEASE " -O2")
+# Library and programs alike, so that headers parsed for one suit the other.
+if(NOT DEAL_II_CXX_FLAGS MATCHES "-fPIC")
+  string(APPEND DEAL_II_CXX_FLAGS " -fPIC")
+endif()
 if(FRICTION_DEBUG_INFO)
   string(APPEND DEAL_II_CXX_FLAGS " -g")
   friction_drop_flags(DEAL_II_CXX_FLAGS_DEBUG "^-g1$")

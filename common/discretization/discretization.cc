@@ -63,7 +63,7 @@ namespace Friction
         if (!cell->is_artificial())
           for (const unsigned int v : cell->vertex_indices())
             if (cell->vertex(v).distance(pinned.point) <
-                1e-6 * cell->diameter())
+                1e-8 * cell->diameter())
               {
                 const auto dof = cell->vertex_dof_index(v, pinned.component);
                 if (!dirichlet.is_constrained(dof))

@@ -18,7 +18,8 @@ readme_command() {
 
 # Warnings of our sources, each once, in what a build has printed.
 n_warnings() {
-  cat "$@" | grep -E '(/friction/|^)(common|step-friction-..|tests)/[^ ]*: warning:|^CMake Warning' |
+  cat "$@" |
+    grep -E '(/friction/|^)(common|step-friction-..|tests)/[^ ]*: warning:|^cc1plus: warning|^CMake Warning' |
     sort -u | tee warnings.log | wc -l
 }
 
