@@ -1,11 +1,11 @@
 # How everything here is compiled and linked: with the flags that deal.II was
 # configured with, since its headers want the same language and its classes the
-# same layout, but for what is a matter of taste or of the machine that built it.
-# To be included after project().
+# same layout, but for optimisation, debug information, paths of the machine that
+# built it, and the linker. To be included after project().
 #
-#   Debug     deal.II's assertions, and -O1: its own -O0 makes tests five times
-#             slower, and finds nothing more
-#   Release   deal.II's optimisation
+#   Debug     deal.II's assertions, and -O1: its own -O0 makes our part of the tests
+#             several times slower, and finds nothing more
+#   Release   -O2
 #
 # Debug information of whole variables makes libraries of 100 MB and a third of
 # the time that compiling takes, and is there if asked for.
@@ -40,15 +40,6 @@ if(FRICTION_DEBUG_INFO)
   friction_drop_flags(DEAL_II_CXX_FLAGS_DEBUG "^-g1$")
 endif()
 
-if(FRICTION_SANITIZERS)
-  set(_sanitizers
-    "-fsanitize=${FRICTION_SANITIZERS} -fno-sanitize-recover=undefined -fno-omit-frame-pointer")
-  # Both look into the same memory, and only one of them can be there.
-  friction_drop_flags(DEAL_II_CXX_FLAGS "FORTIFY_SOURCE")
-  string(APPEND DEAL_II_CXX_FLAGS " ${_sanitizers}")
-  string(APPEND DEAL_II_LINKER_FLAGS " ${_sanitizers}")
-endif()
-
 # Another compiler than deal.II's may not know all of its flags.
 if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   foreach(_variable DEAL_II_WARNING_FLAGS DEAL_II_CXX_FLAGS
@@ -69,6 +60,15 @@ if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   endforeach()
 endif()
 
+if(FRICTION_SANITIZERS)
+  set(_sanitizers
+    "-fsanitize=${FRICTION_SANITIZERS} -fno-sanitize-recover=undefined -fno-omit-frame-pointer")
+  # Both look into the same memory, and only one of them can be there.
+  friction_drop_flags(DEAL_II_CXX_FLAGS "FORTIFY_SOURCE")
+  string(APPEND DEAL_II_CXX_FLAGS " ${_sanitizers}")
+  string(APPEND DEAL_II_LINKER_FLAGS " ${_sanitizers}")
+endif()
+
 # A distribution may have linked deal.II with a linker that it does not install along
 # with it. Besides, deal.II asks for some two hundred libraries: mold links a program
 # with them in half a second, gold in one or two, and GNU ld in a minute, unless it is
@@ -81,6 +81,7 @@ endif()
 set(CMAKE_REQUIRED_QUIET TRUE)
 set(_linkers mold lld ${_recorded} gold)
 foreach(_linker ${_linkers})
+  unset(FRICTION_LINKER_${_linker} CACHE) # it may have come or gone
   set(CMAKE_REQUIRED_LINK_OPTIONS -fuse-ld=${_linker})
   check_cxx_source_compiles("int main() {}" FRICTION_LINKER_${_linker})
   if(NOT FRICTION_LINKER_${_linker})

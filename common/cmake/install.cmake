@@ -13,6 +13,9 @@ file(RELATIVE_PATH _to_library
   ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
 set_target_properties(step-friction-2d step-friction-3d PROPERTIES
   INSTALL_RPATH "$ORIGIN/${_to_library}")
+# And deal.II, where that is in a place of its own.
+set_target_properties(step-friction-2d step-friction-3d friction PROPERTIES
+  INSTALL_RPATH_USE_LINK_PATH TRUE)
 set_target_properties(friction PROPERTIES
   VERSION ${PROJECT_VERSION}
   SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
@@ -21,7 +24,8 @@ install(TARGETS step-friction-2d step-friction-3d)
 install(TARGETS friction EXPORT friction-targets
   INCLUDES DESTINATION ${_headers})
 install(DIRECTORY common DESTINATION ${_headers}
-  FILES_MATCHING PATTERN "*.h" PATTERN cmake EXCLUDE)
+  FILES_MATCHING PATTERN "*.h"
+  PATTERN cmake EXCLUDE PATTERN precompiled.h EXCLUDE)
 foreach(_step step-friction-2d step-friction-3d)
   install(DIRECTORY ${_step}/scenes
     DESTINATION ${CMAKE_INSTALL_DATADIR}/friction/${_step})

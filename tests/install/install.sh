@@ -1,5 +1,5 @@
 #!/bin/sh
-# What is installed works on its own: a program of twenty lines is built against it
+# What is installed works on its own: a program of thirty lines is built against it
 # in an empty place and solves a scene, and the installed step program says which
 # version it is and solves the same scene with the same result.
 #
@@ -43,7 +43,7 @@ case $said in
 *) fail "--version does not begin with step-friction-2d $version" ;;
 esac
 
-# The third to fifth columns of the only row: dofs, contact, sticky.
+# The fourth and fifth column of the only row: contact, sticky.
 row=$(cd "$work" && "$step" "$scene" "Refinement/Initial refinements=4" \
   Refinement/Levels=0 Output/Times=false | awk '$1 == 0 {print $4, $5}')
 [ "$outside" = "${row% *} nodes in contact, ${row#* } of them stick, solved" ] ||

@@ -1,5 +1,5 @@
-"""The compiler's syntax check of all sources in a list of compile commands, two at a
-time; prints how many of how many pass, and to stderr what the compiler says.
+"""The compiler's syntax check of all sources in a list of compile commands, one for
+each core at a time; prints how many of how many pass, and to stderr what the compiler says.
 
 Usage: check_syntax.py compile_commands.json
 """

@@ -5,12 +5,14 @@
 #
 # Usage: portability.sh SOURCES ROOTS ROW
 #   SOURCES  a checkout of this repository; what is in its work tree is tested
-#   ROOTS    a folder for the roots; those that are there already are used again
+#   ROOTS    a folder for the roots; each row has one of its own, a copy of that of
+#            its suite, which is made once
 #   ROW      suite:compiler, for example trixie:g++ or bookworm:clang++-14, or
 #            headers:TAG for the compiler's syntax check of all sources against the
 #            headers of a release of deal.II of which there is no package
 #
-# Wants to be root, debootstrap, and for headers git; DEALII_SOURCES, a folder with
+# Ends with an error if anything in the row is not as it should be. Wants to be root,
+# debootstrap and git; DEALII_SOURCES, a folder with
 # the sources of that release, takes the place of deal.II's public repository.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -28,39 +30,48 @@ if [ "$suite" = headers ]; then
 fi
 
 [ "$(id -u)" -eq 0 ] || { echo "Roots need the rights of root." >&2; exit 1; }
-for program in debootstrap tar; do
+for program in debootstrap git tar; do
   command -v $program >/dev/null || { echo "$program is needed." >&2; exit 1; }
 done
 mkdir -p "$roots"
 roots=$(cd "$roots" && pwd)
-root=$roots/$suite
+bare=$roots/$suite
+root=$roots/$suite.${tag:-$compiler}
 
-if [ ! -e "$root/etc/debian_version" ]; then
-  debootstrap --variant=minbase --include=ca-certificates "$suite" "$root"
-fi
-# Packages expect these to be there; without /sys hwloc complains in each program.
-for mount in proc sys dev/pts; do
-  mountpoint -q "$root/$mount" || mount --bind "/$mount" "$root/$mount"
-done
 unmount() {
   for mount in dev/pts sys proc; do
-    umount "$root/$mount" 2>/dev/null || umount -l "$root/$mount" || true
+    if mountpoint -q "$root/$mount"; then
+      umount "$root/$mount" 2>/dev/null || umount -l "$root/$mount"
+    fi
   done
 }
 trap unmount EXIT
+
+if [ ! -e "$bare/etc/debian_version" ]; then
+  debootstrap --variant=minbase --include=ca-certificates "$suite" "$bare.part"
+  mv "$bare.part" "$bare"
+fi
+# Bare each time, or packages that are missing in a command would not be missed.
+unmount
+rm -rf --one-file-system "$root"
+cp -a "$bare" "$root"
+# Packages expect these to be there; without /sys hwloc complains in each program.
+for mount in proc sys dev/pts; do
+  mount --bind "/$mount" "$root/$mount"
+done
 echo "127.0.0.1 localhost" >"$root/etc/hosts"
 cp /etc/resolv.conf "$root/etc/resolv.conf" 2>/dev/null || true
 # Unstable is never up to date when a mirror is a day old.
 echo 'Acquire::Check-Valid-Until "false";' >"$root/etc/apt/apt.conf.d/99friction"
 
 # The work tree, without what is built in it.
-rm -rf "$root/friction"
 mkdir "$root/friction"
-(cd "$sources" && git ls-files -z --cached --others --exclude-standard |
-  xargs -0 ls -d 2>/dev/null | tar -cf - -T -) | tar -xf - -C "$root/friction"
+(cd "$sources" &&
+  git -c safe.directory="$sources" ls-files --cached --others --exclude-standard |
+  while IFS= read -r file; do [ ! -e "$file" ] || echo "$file"; done |
+    tar -cf - -T -) | tar -xf - -C "$root/friction"
 
 if [ -n "$tag" ]; then
-  rm -rf "$root/dealii"
   [ -z "${DEALII_SOURCES:-}" ] || cp -r "$DEALII_SOURCES" "$root/dealii"
   [ -d "$root/dealii" ] || git clone --quiet --depth 1 --branch "$tag" \
     https://github.com/dealii/dealii "$root/dealii"
@@ -77,7 +88,6 @@ cat "$result"
 
 # The row takes the place of the one that begins with the same two cells.
 awk -v row="$(cat "$result")" '
-  function key(line, cell) {split(line, cell, "|"); return cell[2] cell[3]}
   BEGIN {split(row, wanted, "|"); split(wanted[3], name, " ")}
   /^\| / {
     split($0, cell, "|")
@@ -85,4 +95,15 @@ awk -v row="$(cat "$result")" '
     if (cell[2] == wanted[2] && its[1] == name[1]) {print row; done = 1; next}
   }
   /^<!-- end of the table -->/ && !done {print row}
-  {print}' "$table" >"$table.part" && mv "$table.part" "$table"
+  {print}' "$table" >"$table.part"
+mv "$table.part" "$table"
+
+# Nothing missing, and as many tests passed as there are.
+awk -F'|' '{
+  n = split($8, word, " ")
+  exit !($5 ~ /yes/ && $6 + 0 == 0 && $7 ~ /hertz, cylinder|–/ &&
+    $8 !~ /none|FAILED/ && word[n - 2] == word[n] && word[n] > 0)
+}' "$result" || {
+  echo "Not all is well; see $root/friction/*.log" >&2
+  exit 1
+}

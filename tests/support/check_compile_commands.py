@@ -4,7 +4,9 @@ In a debug tree everything has deal.II's assertions and is optimised all the sam
 but for the programs that studies run, which are those of release mode. In release
 mode nothing is left of either.
 
-Usage: check_compile_commands.py compile_commands.json Debug|Release SOURCES
+With sanitizers everything is compiled with them.
+
+Usage: check_compile_commands.py compile_commands.json Debug|Release SOURCES SANITIZERS
 """
 import json
 import shlex
@@ -23,7 +25,7 @@ def flags_of(command):
 
 
 def main():
-    path, build_type, sources = sys.argv[1:]
+    path, build_type, sources, sanitizers = sys.argv[1:]
     with open(path) as file:
         entries = [entry for entry in json.load(file)
                    if entry["file"].startswith(sources + "/")
@@ -39,6 +41,8 @@ def main():
         else:
             good = optimisation in ("-O1", "-Og") and "DEBUG" in defined \
                 and "NDEBUG" not in defined
+        if sanitizers and f"-fsanitize={sanitizers}" not in entry["command"]:
+            good = False
         if not good:
             wrong.append(f"{output}: {optimisation}, "
                          + ("" if "DEBUG" in defined else "no ") + "assertions")

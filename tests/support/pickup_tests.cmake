@@ -36,13 +36,14 @@ endfunction()
 add_custom_target(tests-quick)
 add_dependencies(tests-quick step-friction-2d step-friction-3d)
 
-# friction_test_program(target source ...): a program that a test needs, built like
-# those of deal.II's tests.
+# friction_test_program(target [OPTIMISED] source ...): a program that tests need;
+# those of studies, which are optimised, are built like those of deal.II's tests.
 function(friction_test_program target)
   friction_executable(${target} ${ARGN})
-  set_target_properties(${target} PROPERTIES
-    EXCLUDE_FROM_ALL ${FRICTION_TESTS_ON_DEMAND})
-  if(NOT "OPTIMISED" IN_LIST ARGN)
+  if("OPTIMISED" IN_LIST ARGN)
+    set_target_properties(${target} PROPERTIES
+      EXCLUDE_FROM_ALL ${FRICTION_TESTS_ON_DEMAND})
+  else()
     add_dependencies(tests-quick ${target})
   endif()
 endfunction()
@@ -54,6 +55,7 @@ function(pickup_tests)
   cmake_parse_arguments(_pickup "" "" "FULL" ${ARGN})
   deal_ii_pickup_tests()
 
+  set(_found)
   get_property(_tests DIRECTORY PROPERTY TESTS)
   foreach(_test ${_tests})
     string(REGEX REPLACE "^[^/]*/([^.]*)\\..*" "\\1" _name ${_test})
@@ -69,7 +71,7 @@ function(pickup_tests)
     label_test(${_test} LABEL ${_label} PROCESSES ${_processes})
   endforeach()
   foreach(_name ${_pickup_FULL})
-    if(NOT _name IN_LIST _found)
+    if(NOT _name IN_LIST _found AND NOT TEST_PICKUP_REGEX)
       message(FATAL_ERROR "There is no test ${_name} in ${CMAKE_CURRENT_SOURCE_DIR}.")
     endif()
   endforeach()

@@ -8,7 +8,8 @@ function(add_scene_tests PROGRAM BOUND)
   file(GLOB _scenes CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${PROGRAM}/scenes/*.prm)
   foreach(_scene ${_scenes})
     get_filename_component(_name ${_scene} NAME_WE)
-    if(NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.prm.in)
+    if(NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.prm.in OR
+        NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.output)
       message(FATAL_ERROR "The scene ${_scene} has no test: write "
         "${CMAKE_CURRENT_SOURCE_DIR}/${_name}.prm.in and ${_name}.output.")
     endif()
