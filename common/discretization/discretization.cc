@@ -17,6 +17,9 @@
 
 #include <deal.II/numerics/vector_tools.h>
 
+#include <algorithm>
+#include <vector>
+
 namespace Friction
 {
   template <int dim>
@@ -165,11 +168,24 @@ namespace Friction
     Vector<double>                       cell_rhs(n_dofs), value(dim);
     Table<2, double>                     theta;
     std::vector<types::global_dof_index> indices(n_dofs);
+
+    // A shape function at a quadrature point.
+    struct Shape
+    {
+      unsigned int   component;
+      Tensor<1, dim> gradient;
+      double         theta;
+    };
+    std::vector<Shape> shapes(n_dofs);
+    for (unsigned int i = 0; i < n_dofs; ++i)
+      shapes[i].component = fe.system_to_component_index(i).first;
+    std::vector<double> sums(n_dofs * n_dofs);
+
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
         {
-          cell_matrix = 0.;
-          cell_rhs    = 0.;
+          std::fill(sums.begin(), sums.end(), 0.);
+          cell_rhs = 0.;
           fe_values.reinit(cell);
           const double factor = stiffening ? stiffening(cell->center()) : 1.;
           const double lambda = factor * scene.material().lambda();
@@ -177,21 +193,24 @@ namespace Friction
           shape_volumetric_strains(fe_values, scene.material(), theta);
           for (const unsigned int q : fe_values.quadrature_point_indices())
             {
+              // What belongs to one shape function is asked for once, and not
+              // for each pair.
               for (unsigned int i = 0; i < n_dofs; ++i)
                 {
-                  const unsigned int ci = fe.system_to_component_index(i).first;
-                  const Tensor<1, dim> gi = fe_values.shape_grad(i, q);
-                  for (unsigned int j = 0; j < n_dofs; ++j)
-                    {
-                      const unsigned int cj =
-                        fe.system_to_component_index(j).first;
-                      const Tensor<1, dim> gj = fe_values.shape_grad(j, q);
-                      cell_matrix(i, j) += (lambda * theta(i, q) * theta(j, q) +
-                                            mu * gi[cj] * gj[ci] +
-                                            (ci == cj ? mu * (gi * gj) : 0.)) *
-                        fe_values.JxW(q);
-                    }
+                  shapes[i].gradient = fe_values.shape_grad(i, q);
+                  shapes[i].theta    = theta(i, q);
                 }
+              const double JxW   = fe_values.JxW(q);
+              double      *entry = sums.data();
+              for (const Shape &i : shapes)
+                for (const Shape &j : shapes)
+                  *entry++ +=
+                    (lambda * i.theta * j.theta +
+                     mu * i.gradient[j.component] * j.gradient[i.component] +
+                     (i.component == j.component
+                        ? mu * (i.gradient * j.gradient)
+                        : 0.)) *
+                    JxW;
               if (scene.body_force() != nullptr)
                 {
                   scene.body_force()->vector_value(
@@ -202,6 +221,9 @@ namespace Friction
                       fe_values.shape_value(i, q) * fe_values.JxW(q);
                 }
             }
+          for (unsigned int i = 0; i < n_dofs; ++i)
+            for (unsigned int j = 0; j < n_dofs; ++j)
+              cell_matrix(i, j) = sums[i * n_dofs + j];
           for (const unsigned int f : cell->face_indices())
             if (cell->face(f)->at_boundary())
               for (const auto &condition : scene.traction_conditions())
