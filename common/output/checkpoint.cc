@@ -2,7 +2,6 @@
 #include <common/output/checkpoint.h>
 #include <common/parallel/collective_error.h>
 
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>

@@ -10,7 +10,6 @@
 
 #include <tests/support/check.h>
 
-
 using namespace Benchmark;
 
 namespace

@@ -10,7 +10,6 @@
 
 #include <deal.II/base/timer.h>
 
-
 #include <algorithm>
 #include <cmath>
 #include <memory>

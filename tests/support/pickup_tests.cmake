@@ -8,11 +8,13 @@
 #
 # deal.II itself sets a property LABEL, which ctest does not know.
 
-# Open MPI starts under root as well, and more processes than there are cores.
-# The last word is for Open MPI 5, the one before it for earlier ones.
+# Open MPI starts under root as well, and more processes than there are cores (one
+# word for Open MPI 5, one for earlier ones). All of them are on one machine, so that
+# it need not look for a network, and complain if there is none.
 set(FRICTION_MPI_ENVIRONMENT
   OMPI_ALLOW_RUN_AS_ROOT=1
   OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+  OMPI_MCA_btl=^tcp
   OMPI_MCA_rmaps_base_oversubscribe=1
   PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe)
 
