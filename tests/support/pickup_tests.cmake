@@ -1,8 +1,10 @@
 # What ctest -L can choose from. Each test has one of these labels, and the name of
 # its folder:
 #
-#   quick    the mathematics of every part, and the scenes on small meshes
-#   full     what takes longer: solvers on finer meshes, restarts, bad input
+#   quick    the mathematics of every part, and the scenes on small meshes, on one
+#            and two processes
+#   full     what takes longer: more processes, solvers on finer meshes, restarts, bad
+#            input
 #   studies  figures, charts and benchmarks, on tiny meshes
 #   pages    prose, commands of pages, pages in a browser
 #
@@ -19,11 +21,15 @@ set(FRICTION_MPI_ENVIRONMENT
   PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe)
 
 # label_test(name LABEL quick|full|studies|pages [PROCESSES n]): a test that was
-# added already. Its folder is the part of its name before the first slash.
+# added already. Its folder is the part of its name before the first slash. On more
+# than two processes it is never quick.
 function(label_test name)
   cmake_parse_arguments(_test "" "LABEL;PROCESSES" "" ${ARGN})
   if(NOT _test_PROCESSES)
     set(_test_PROCESSES 1)
+  endif()
+  if(_test_PROCESSES GREATER 2 AND _test_LABEL STREQUAL "quick")
+    set(_test_LABEL full)
   endif()
   string(REGEX REPLACE "/.*" "" _folder ${name})
   set_tests_properties(${name} PROPERTIES
