@@ -53,6 +53,7 @@ if [ -n "$tag" ]; then
   } >packages.log 2>&1
   cmake -S /dealii -B /dealii-build -G Ninja -DDEAL_II_WITH_MPI=ON \
     -DDEAL_II_WITH_P4EST=ON -DDEAL_II_WITH_TRILINOS=ON -DDEAL_II_WITH_HDF5=ON \
+    -DHDF5_DIR="/usr/lib/$(gcc -dumpmachine)/hdf5/openmpi" \
     -DDEAL_II_WITH_MUPARSER=ON -DDEAL_II_COMPONENT_EXAMPLES=OFF \
     >dealii.log 2>&1 || exit 1
   configured=no
