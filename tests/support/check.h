@@ -10,8 +10,8 @@ namespace Tests
 {
   /**
    * The checks of this program that have failed. A program with a failed check
-   * ends with exit status 1, whatever its main() returns, so that nothing
-   * depends on somebody comparing its output.
+   * ends with exit status 1, whatever its main() returns, so that this
+   * does not depend on a comparison of its output.
    */
   class FailedChecks
   {
@@ -25,8 +25,8 @@ namespace Tests
   private:
     FailedChecks() = default;
 
-    // Runs when the program ends, after MPI has been shut down. The rest of
-    // that, which would return the status of main(), is not waited for.
+    // Runs when the program ends, after MPI has been shut down; the status
+    // that main() has returned is replaced.
     ~FailedChecks()
     {
       std::cout.flush();
