@@ -32,25 +32,25 @@
 // (<code>solvers</code>), where to refine (<code>estimate</code>), and what is
 // written (<code>output</code>).
 #include <common/compatibility.h>
-#include <common/contact/contact_boundary.h>
-#include <common/contact/nodal_constraints.h>
-#include <common/elasticity/volumetric_strain.h>
+#include <common/discretization/contact_boundary.h>
+#include <common/nodes/nodal_constraints.h>
+#include <common/discretization/volumetric_strain.h>
 #include <common/estimate/contact_estimate.h>
 #include <common/estimate/exact_error.h>
 #include <common/estimate/marking.h>
-#include <common/multigrid/leaf_matrix.h>
-#include <common/multigrid/level_hierarchy.h>
-#include <common/multigrid/node_numbering.h>
+#include <common/discretization/leaf_matrix.h>
+#include <common/levels/level_hierarchy.h>
+#include <common/discretization/node_numbering.h>
 #include <common/output/checkpoint.h>
 #include <common/output/level_records.h>
 #include <common/output/run_output.h>
 #include <common/program/command_line.h>
 #include <common/program/version.h>
-#include <common/scene/parameters.h>
+#include <common/parameters/parameters.h>
 #include <common/scene/scene.h>
-#include <common/solvers/discretization_stop.h>
-#include <common/solvers/initial_guess.h>
-#include <common/solvers/safeguarded_solver.h>
+#include <common/algorithms/discretization_stop.h>
+#include <common/algorithms/initial_guess.h>
+#include <common/algorithms/safeguarded_solver.h>
 
 #include <iostream>
 #include <memory>

@@ -1,7 +1,7 @@
 #ifndef friction_contact_certificate_h
 #define friction_contact_certificate_h
 
-#include <common/contact/contact_boundary.h>
+#include <common/discretization/contact_boundary.h>
 #include <common/contact/contact_state.h>
 
 #include <string>

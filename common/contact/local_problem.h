@@ -3,7 +3,7 @@
 
 #include <common/contact/slip_problem.h>
 
-#include <common/scene/solver_settings.h>
+#include <common/parameters/solver_settings.h>
 
 #include <array>
 

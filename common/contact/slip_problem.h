@@ -1,7 +1,7 @@
 #ifndef friction_contact_slip_problem_h
 #define friction_contact_slip_problem_h
 
-#include <common/scene/solver_settings.h>
+#include <common/parameters/solver_settings.h>
 
 #include <array>
 

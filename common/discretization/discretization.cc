@@ -1,8 +1,8 @@
 #include <common/compatibility.h>
 #include <common/discretization/discretization.h>
-#include <common/elasticity/volumetric_strain.h>
-#include <common/multigrid/leaf_matrix.h>
-#include <common/multigrid/node_numbering.h>
+#include <common/discretization/volumetric_strain.h>
+#include <common/discretization/leaf_matrix.h>
+#include <common/discretization/node_numbering.h>
 
 #include <deal.II/base/quadrature_lib.h>
 

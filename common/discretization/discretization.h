@@ -1,12 +1,12 @@
 #ifndef friction_discretization_discretization_h
 #define friction_discretization_discretization_h
 
-#include <common/contact/contact_boundary.h>
+#include <common/discretization/contact_boundary.h>
 #include <common/contact/contact_state.h>
-#include <common/contact/nodal_constraints.h>
-#include <common/multigrid/level_hierarchy.h>
+#include <common/nodes/nodal_constraints.h>
+#include <common/levels/level_hierarchy.h>
 #include <common/scene/scene.h>
-#include <common/solvers/discrete_problem.h>
+#include <common/discretization/discrete_problem.h>
 
 #include <deal.II/distributed/tria.h>
 

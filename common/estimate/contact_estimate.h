@@ -1,7 +1,7 @@
 #ifndef friction_estimate_contact_estimate_h
 #define friction_estimate_contact_estimate_h
 
-#include <common/contact/contact_boundary.h>
+#include <common/discretization/contact_boundary.h>
 #include <common/contact/contact_state.h>
 #include <common/estimate/residual_estimator.h>
 #include <common/scene/scene.h>

@@ -1,7 +1,7 @@
 #ifndef friction_estimate_exact_error_h
 #define friction_estimate_exact_error_h
 
-#include <common/scene/material.h>
+#include <common/parameters/material.h>
 
 #include <deal.II/base/function.h>
 

@@ -1,5 +1,5 @@
 #include <common/compatibility.h>
-#include <common/elasticity/volumetric_strain.h>
+#include <common/discretization/volumetric_strain.h>
 #include <common/estimate/residual_estimator.h>
 
 #include <deal.II/base/mpi.h>

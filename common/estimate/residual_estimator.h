@@ -1,7 +1,7 @@
 #ifndef friction_estimate_residual_estimator_h
 #define friction_estimate_residual_estimator_h
 
-#include <common/scene/material.h>
+#include <common/parameters/material.h>
 
 #include <deal.II/base/function.h>
 #include <deal.II/base/types.h>

@@ -1,5 +1,5 @@
 #include <common/compatibility.h>
-#include <common/elasticity/volumetric_strain.h>
+#include <common/discretization/volumetric_strain.h>
 #include <common/output/fields.h>
 #include <common/parallel/collective_error.h>
 

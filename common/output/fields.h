@@ -20,8 +20,8 @@
 
 #include <common/output/history.h>
 #include <common/output/run_directory.h>
-#include <common/scene/material.h>
-#include <common/scene/parameters.h>
+#include <common/parameters/material.h>
+#include <common/parameters/parameters.h>
 
 #include <string>
 #include <utility>

@@ -1,6 +1,6 @@
 #include <common/compatibility.h>
 #include <common/output/level_records.h>
-#include <common/solvers/safeguarded_solver.h>
+#include <common/algorithms/safeguarded_solver.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/numbers.h>

@@ -2,7 +2,7 @@
 #define friction_output_level_records_h
 
 #include <common/output/history.h>
-#include <common/solvers/coulomb_solver.h>
+#include <common/algorithms/coulomb_solver.h>
 
 #include <string>
 #include <vector>

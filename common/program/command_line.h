@@ -1,7 +1,7 @@
 #ifndef friction_program_command_line_h
 #define friction_program_command_line_h
 
-#include <common/scene/parameters.h>
+#include <common/parameters/parameters.h>
 
 #include <functional>
 #include <string>

@@ -1,7 +1,7 @@
 #ifndef friction_scene_geometries_h
 #define friction_scene_geometries_h
 
-#include <common/scene/parameters.h>
+#include <common/parameters/parameters.h>
 
 #include <deal.II/grid/tria.h>
 

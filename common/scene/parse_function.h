@@ -2,7 +2,7 @@
 #define friction_scene_parse_function_h
 
 #include <common/scene/input_error.h>
-#include <common/scene/parameters.h>
+#include <common/parameters/parameters.h>
 
 #include <deal.II/base/function_parser.h>
 #include <deal.II/base/utilities.h>

@@ -1,9 +1,9 @@
 #ifndef friction_scene_scene_h
 #define friction_scene_scene_h
 
-#include <common/scene/material.h>
+#include <common/parameters/material.h>
 #include <common/scene/obstacle.h>
-#include <common/scene/parameters.h>
+#include <common/parameters/parameters.h>
 
 #include <deal.II/base/function.h>
 #include <deal.II/base/types.h>

@@ -1,6 +1,6 @@
 """Chart 6, figure 6.3 of the thesis: up to which coefficient of friction a
 solution is known to exist, over the Poisson ratio. The formulas are those of
-eck_bound() in common/scene/material.h."""
+eck_bound() in common/parameters/material.h."""
 
 import numpy as np
 

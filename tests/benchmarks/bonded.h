@@ -2,7 +2,7 @@
 #define friction_tests_benchmarks_bonded_h
 
 #include <common/contact/contact_state.h>
-#include <common/solvers/discrete_problem.h>
+#include <common/discretization/discrete_problem.h>
 
 namespace Benchmark
 {

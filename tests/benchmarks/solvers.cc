@@ -37,7 +37,7 @@
 
 #include <deal.II/grid/grid_tools.h>
 
-#include <common/solvers/safeguarded_solver.h>
+#include <common/algorithms/safeguarded_solver.h>
 
 #include <tests/benchmarks/baselines/contest.h>
 #include <tests/benchmarks/guesses.h>

@@ -1,6 +1,6 @@
 // Scene files, overrides, and what is said about everything wrong in them.
 
-#include <common/scene/parameters.h>
+#include <common/parameters/parameters.h>
 
 #include <fstream>
 #include <iostream>

@@ -5,8 +5,8 @@
 #include <common/discretization/discretization.h>
 #include <common/estimate/contact_estimate.h>
 #include <common/estimate/marking.h>
-#include <common/solvers/coulomb_solver.h>
-#include <common/solvers/initial_guess.h>
+#include <common/algorithms/coulomb_solver.h>
+#include <common/algorithms/initial_guess.h>
 
 #include <deal.II/base/timer.h>
 

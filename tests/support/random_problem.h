@@ -2,7 +2,7 @@
 #define friction_tests_support_random_problem_h
 
 #include <common/discretization/discretization.h>
-#include <common/multigrid/truncation.h>
+#include <common/nodes/truncation.h>
 
 #include <deal.II/base/mpi.h>
 

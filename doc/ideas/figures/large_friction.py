@@ -5,7 +5,7 @@ import numpy as np
 
 from chart import BLUE, GREY, RED, grid, plt
 
-# The body of the test tests/solvers/multiple_solutions.cc: one square cell, held
+# The body of the test tests/algorithms/multiple_solutions.cc: one square cell, held
 # at its top and at its right.
 YOUNG, POISSON, FRICTION, PRESS = 1.0, 0.3, 4.0, 1.0
 

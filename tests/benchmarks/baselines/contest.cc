@@ -1,4 +1,4 @@
-#include <common/solvers/safeguarded_solver.h>
+#include <common/algorithms/safeguarded_solver.h>
 
 #include <tests/benchmarks/baselines/contest.h>
 #include <tests/benchmarks/baselines/gauss_seidel.h>

@@ -1,7 +1,7 @@
 #ifndef friction_tests_benchmarks_report_h
 #define friction_tests_benchmarks_report_h
 
-#include <common/contact/nodal_constraints.h>
+#include <common/nodes/nodal_constraints.h>
 
 #include <functional>
 #include <string>

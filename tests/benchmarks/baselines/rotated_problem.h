@@ -1,7 +1,7 @@
 #ifndef friction_tests_benchmarks_rotated_problem_h
 #define friction_tests_benchmarks_rotated_problem_h
 
-#include <common/solvers/discrete_problem.h>
+#include <common/discretization/discrete_problem.h>
 
 #include <vector>
 

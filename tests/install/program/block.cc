@@ -2,7 +2,7 @@
 // solution.
 
 #include <common/discretization/discretization.h>
-#include <common/solvers/coulomb_solver.h>
+#include <common/algorithms/coulomb_solver.h>
 
 #include <iostream>
 

@@ -1,0 +1,62 @@
+#include <common/algorithms/discretization_stop.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Friction
+{
+  namespace
+  {
+    // What the residual estimator is, in multiples of the error.
+    constexpr double overestimation = 8.;
+
+    // The share of the iteration in the error.
+    constexpr double share = .1;
+
+    // How much better than expected a mesh may be.
+    constexpr double caution = .5;
+  } // namespace
+
+
+
+  template <int dim>
+  DiscretizationStop<dim>::DiscretizationStop(const SolverSettings &settings)
+    : settings(settings)
+  {}
+
+
+
+  template <int dim>
+  SolverSettings
+  DiscretizationStop<dim>::settings_for(
+    const dealii::types::global_dof_index n_dofs) const
+  {
+    SolverSettings result = settings;
+    if (settings.stop_at_discretization && error > 0)
+      {
+        result.energy_tolerance = caution * share * error *
+          std::pow(double(n_dofs_then) / double(n_dofs), 1. / dim);
+        // Forces at single nodes are known less well than the energy; an error
+        // of a percent is not what the mesh is to be blamed for, more is.
+        result.certificate_tolerance =
+          std::max(settings.certificate_tolerance, 1e-2);
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  DiscretizationStop<dim>::add_estimate(
+    const double estimated_error, const dealii::types::global_dof_index n_dofs)
+  {
+    error       = estimated_error / overestimation;
+    n_dofs_then = n_dofs;
+  }
+
+
+
+  template class DiscretizationStop<2>;
+  template class DiscretizationStop<3>;
+} // namespace Friction

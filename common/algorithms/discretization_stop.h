@@ -1,0 +1,45 @@
+#ifndef friction_algorithms_discretization_stop_h
+#define friction_algorithms_discretization_stop_h
+
+#include <common/parameters/solver_settings.h>
+
+#include <deal.II/base/types.h>
+
+namespace Friction
+{
+  /**
+   * Says when a solution is as good as its mesh: when the error of the
+   * iteration is a tenth of that of the discretisation, so that going on would
+   * change the sum of both by half a percent.
+   *
+   * The error of the discretisation is that of the residual estimator, divided
+   * by eight: so much larger than the true error it is on regular meshes, with
+   * smooth and with singular solutions (see ErrorEstimate and its tests). It is
+   * not known before the mesh has been solved. So that of the mesh before is
+   * taken, scaled by the rate at which errors fall with the number of unknowns,
+   * $N^{-1/d}$, and halved, since the first meshes may do better than that.
+   */
+  template <int dim>
+  class DiscretizationStop
+  {
+  public:
+    /** Does nothing unless the settings say so. */
+    explicit DiscretizationStop(const SolverSettings &settings);
+
+    /** The settings to solve the next mesh with.
+     * @param n_dofs  number of unknowns on it. */
+    SolverSettings
+    settings_for(const dealii::types::global_dof_index n_dofs) const;
+
+    /** Is told the estimated error of a mesh, an energy norm. */
+    void add_estimate(const double                          estimated_error,
+                      const dealii::types::global_dof_index n_dofs);
+
+  private:
+    const SolverSettings            settings;
+    double                          error = 0; // energy norm; unknown if zero
+    dealii::types::global_dof_index n_dofs_then = 0;
+  };
+} // namespace Friction
+
+#endif

@@ -1,0 +1,377 @@
+#include <common/parallel/reductions.h>
+#include <common/algorithms/safeguarded_solver.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <sstream>
+
+namespace Friction
+{
+  namespace
+  {
+    // Without friction, and with given bounds, there is nothing to iterate but
+    // the multigrid method.
+    template <int dim>
+    std::string
+    name_of(const DiscreteProblem<dim> &problem, const SolverSettings &settings)
+    {
+      if (!problem.has_friction() ||
+          problem.friction_law != FrictionLaw::coulomb)
+        return "the multigrid iteration";
+      return settings.algorithm == Algorithm::fixed_point ? "Algorithm 2"
+                                                          : "Algorithm 3";
+    }
+
+
+
+    // Whether phases were still changing when an iteration ended: then it is
+    // not slow coarse corrections that it died of.
+    bool
+    phases_change(const SolverReport &report)
+    {
+      const auto  &cycles = report.cycles;
+      const auto   n      = std::min<std::size_t>(cycles.size(), 10);
+      unsigned int change = 0;
+      for (std::size_t i = cycles.size() - n + 1; i < cycles.size(); ++i)
+        change += (cycles[i].truncated != cycles[i - 1].truncated);
+      return change > 0;
+    }
+
+
+
+    bool
+    is_finite(const VectorType &u, const ContactState &state)
+    {
+      bool infinite = false;
+      for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+        infinite = infinite || !std::isfinite(u.local_element(i));
+      for (unsigned int p = 0; p < state.size(); ++p)
+        infinite = infinite || !std::isfinite(state.normal_force(p));
+      return !true_on_any_process(infinite, u.get_mpi_communicator());
+    }
+
+
+
+    // The settings of the first attempt may give an iteration up early, if
+    // there is something else to be tried.
+    SolverSettings
+    first_settings(const SolverSettings &settings)
+    {
+      SolverSettings result = settings;
+      result.gives_up_early = settings.safeguards;
+      return result;
+    }
+
+
+
+    // What all other attempts have in common. They are to find a solution, to
+    // the usual tolerance, and by the method that is known to work best.
+    SolverSettings
+    fallback_settings(const SolverSettings &settings)
+    {
+      SolverSettings result    = first_settings(settings);
+      result.energy_tolerance  = 0.;
+      result.coarse_correction = CoarseCorrection::truncated;
+      result.truncation        = TruncationVariant::phases;
+      return result;
+    }
+
+
+
+    // Notes what has been tried: its outcome, and all the cycles that it took,
+    // which may be those of several solutions.
+    void
+    add_attempt(SolverReport                 &all,
+                const std::string            &name,
+                const SolverReport           &outcome,
+                const std::vector<CycleInfo> &cycles)
+    {
+      all.attempts.push_back({name,
+                              static_cast<unsigned int>(cycles.size()),
+                              outcome.converged,
+                              outcome.certificate.largest()});
+      all.cycles.insert(all.cycles.end(), cycles.begin(), cycles.end());
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  SafeguardedSolver<dim>::SafeguardedSolver(
+    const LevelHierarchy<dim>  &hierarchy,
+    const DiscreteProblem<dim> &problem,
+    const SolverSettings       &settings)
+    : hierarchy(hierarchy)
+    , problem(problem)
+    , settings(settings)
+    , first(hierarchy, problem, first_settings(settings))
+  {}
+
+
+
+  template <int dim>
+  SolverReport
+  SafeguardedSolver<dim>::attempt(const std::string  &name,
+                                  CoulombSolver<dim> &solver,
+                                  VectorType         &u,
+                                  ContactState       &state,
+                                  SolverReport       &all,
+                                  const Progress     &progress) const
+  {
+    const VectorType   start       = u;
+    const ContactState start_state = state;
+    SolverReport       report      = solver.solve(u, state, progress);
+    add_attempt(all, name, report, report.cycles);
+    if (!is_finite(u, state))
+      {
+        u     = start;
+        state = start_state;
+      }
+    return report;
+  }
+
+
+
+  template <int dim>
+  SolverReport
+  SafeguardedSolver<dim>::solve(VectorType     &u,
+                                ContactState   &state,
+                                const Progress &progress)
+  {
+    if (!settings.safeguards)
+      return first.solve(u, state, progress);
+
+    const PhaseCosts before = phase_costs();
+    const bool       coulomb =
+      problem.has_friction() && problem.friction_law == FrictionLaw::coulomb;
+    const VectorType   initial       = u;
+    const ContactState initial_state = state;
+    SolverReport       all;
+    SolverReport       report =
+      attempt(name_of(problem, settings), first, u, state, all, progress);
+
+    if (!report.converged)
+      {
+        // Shorter steps, each of its own direction: a line search works with
+        // the normal forces of the moment and may go too far for those that
+        // come.
+        SolverSettings cautious   = fallback_settings(settings);
+        cautious.maximum_damping  = std::min(.5, settings.maximum_damping);
+        cautious.recombined_steps = 0;
+        // Where only the outer iteration of Algorithm 2 has failed, neither of
+        // the two attempts that follow would be any better.
+        const bool outer_failure = coulomb && report.inner_converged &&
+          settings.algorithm == Algorithm::fixed_point;
+        bool slow_corrections =
+          !outer_failure && (!coulomb || !phases_change(report));
+        if (!slow_corrections && !outer_failure)
+          {
+            CoulombSolver<dim> solver(hierarchy, problem, cautious);
+            report = attempt(name_of(problem, settings) + " with short steps",
+                             solver,
+                             u,
+                             state,
+                             all,
+                             progress);
+            slow_corrections = !phases_change(report);
+          }
+        if (!report.converged && slow_corrections)
+          {
+            SolverSettings algebraic    = cautious;
+            algebraic.coarse_correction = CoarseCorrection::algebraic;
+            algebraic.maximum_damping = std::min(1., settings.maximum_damping);
+            CoulombSolver<dim> solver(hierarchy, problem, algebraic);
+            report = attempt(name_of(problem, settings) +
+                               " with algebraic corrections",
+                             solver,
+                             u,
+                             state,
+                             all,
+                             progress);
+          }
+      }
+    if (!report.converged && coulomb)
+      report = mixed_algorithm_2(
+        problem.effective_coefficient(), u, state, all, progress);
+    // The last two start anew, and what they have got to is of no use if they
+    // do not arrive.
+    const auto start_anew = [&](const auto &method) {
+      VectorType   other       = initial;
+      ContactState other_state = initial_state;
+      report                   = method(other, other_state);
+      if (report.converged)
+        {
+          u     = other;
+          state = other_state;
+        }
+    };
+    if (!report.converged && coulomb)
+      start_anew([&](VectorType &v, ContactState &s) {
+        return careful_algorithm_2(v, s, all, progress);
+      });
+    if (!report.converged && coulomb)
+      start_anew([&](VectorType &v, ContactState &s) {
+        return continuation(v, s, all, progress);
+      });
+
+    if (all.attempts.size() > 1)
+      {
+        // What is reported of a failure is what is returned, and not the end of
+        // an attempt that has been thrown away.
+        if (!report.converged)
+          first.certify(report, u, state);
+        report.cycles   = all.cycles;
+        report.attempts = all.attempts;
+        report.costs    = phase_costs() - before;
+      }
+    return report;
+  }
+
+
+
+  template <int dim>
+  SolverReport
+  SafeguardedSolver<dim>::mixed_algorithm_2(const double    coefficient,
+                                            VectorType     &u,
+                                            ContactState   &state,
+                                            SolverReport   &all,
+                                            const Progress &progress) const
+  {
+    SolverSettings mixed         = fallback_settings(settings);
+    mixed.algorithm              = Algorithm::fixed_point;
+    mixed.outer_damping          = .5;
+    mixed.mixed_outer_iterations = 10;
+    mixed.maximum_outer_iterations =
+      std::max(200u, settings.maximum_outer_iterations);
+    DiscreteProblem<dim> with_coefficient = {problem.matrix,
+                                             problem.forces,
+                                             problem.constraints,
+                                             problem.contact,
+                                             problem.friction_law,
+                                             coefficient};
+
+    const std::string name = "Algorithm 2 with mixed normal forces";
+    SolverReport      report;
+    {
+      CoulombSolver<dim> solver(hierarchy, with_coefficient, mixed);
+      report = attempt(name, solver, u, state, all, progress);
+    }
+    if (!report.inner_converged)
+      {
+        mixed.coarse_correction = CoarseCorrection::algebraic;
+        CoulombSolver<dim> solver(hierarchy, with_coefficient, mixed);
+        report = attempt(
+          name + ", algebraic corrections", solver, u, state, all, progress);
+      }
+    return report;
+  }
+
+
+
+  // What mixing extrapolates from are changes of phases as well, and where
+  // there is very much friction nothing good comes of that. Fixed small steps
+  // that do without get close to the solution, slowly; where the phases are
+  // those of the solution, or nearly so, mixing does the rest. All of it is one
+  // attempt.
+  template <int dim>
+  SolverReport
+  SafeguardedSolver<dim>::careful_algorithm_2(VectorType     &u,
+                                              ContactState   &state,
+                                              SolverReport   &all,
+                                              const Progress &progress) const
+  {
+    SolverSettings careful           = fallback_settings(settings);
+    careful.algorithm                = Algorithm::fixed_point;
+    careful.outer_damping            = .02;
+    careful.mixed_outer_iterations   = 0;
+    careful.maximum_outer_iterations = 1000;
+    // CoulombSolver divides this by the coefficient.
+    careful.outer_tolerance =
+      .01 * std::max(1., problem.effective_coefficient());
+    const std::string name =
+      "Algorithm 2 with small steps of the normal forces";
+    SolverReport report, steps;
+    {
+      CoulombSolver<dim> solver(hierarchy, problem, careful);
+      report = attempt(name, solver, u, state, steps, progress);
+    }
+    if (report.inner_converged)
+      {
+        careful.outer_tolerance        = settings.outer_tolerance;
+        careful.mixed_outer_iterations = 10;
+        CoulombSolver<dim> solver(hierarchy, problem, careful);
+        report = attempt(name, solver, u, state, steps, progress);
+      }
+    add_attempt(all, name, report, steps.cycles);
+    return report;
+  }
+
+
+
+  // The coefficient is doubled for as long as that works, and multiplied by the
+  // square root of the last factor where it does not. All of it is one attempt.
+  template <int dim>
+  SolverReport
+  SafeguardedSolver<dim>::continuation(VectorType     &u,
+                                       ContactState   &state,
+                                       SolverReport   &all,
+                                       const Progress &progress) const
+  {
+    const double target = problem.effective_coefficient();
+    // Where most problems are easy.
+    constexpr double easy            = .25;
+    constexpr double smallest_factor = 1.05;
+    double           solved = 0, factor = 2;
+    SolverReport     report, steps;
+    while (solved < target)
+      {
+        const double coefficient = solved == 0
+          ? std::min(easy, target / 2)
+          : std::min(solved * factor, target);
+        VectorType   next        = u;
+        ContactState next_state  = state;
+        report =
+          mixed_algorithm_2(coefficient, next, next_state, steps, progress);
+        if (report.converged)
+          {
+            solved = coefficient;
+            u      = next;
+            state  = next_state;
+          }
+        else
+          {
+            factor = std::sqrt(factor);
+            if (solved == 0 || factor < smallest_factor)
+              break;
+          }
+      }
+    report.converged = report.converged && solved == target;
+
+    std::ostringstream name;
+    name << "continuation from less friction, up to the coefficient " << solved
+         << ",";
+    add_attempt(all, name.str(), report, steps.cycles);
+    return report;
+  }
+
+
+
+  std::string
+  describe_attempts(const SolverReport &report)
+  {
+    std::string text;
+    for (const SolverAttempt &attempt : report.attempts)
+      text += (text.empty() ? "" : "; ") + attempt.name +
+        (attempt.converged ? " took " : " was given up after ") +
+        std::to_string(attempt.cycles) + " cycles";
+    if (!text.empty())
+      text[0] = std::toupper(static_cast<unsigned char>(text[0]));
+    return text.empty() ? text : text + ".";
+  }
+
+
+
+  template class SafeguardedSolver<2>;
+  template class SafeguardedSolver<3>;
+} // namespace Friction

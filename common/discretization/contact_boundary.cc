@@ -1,0 +1,251 @@
+#include <common/discretization/contact_boundary.h>
+#include <common/parallel/collective_error.h>
+#include <common/scene/input_error.h>
+
+#include <deal.II/base/quadrature_lib.h>
+
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <deal.II/grid/manifold.h>
+#include <deal.II/grid/tria.h>
+
+#include <cmath>
+#include <map>
+#include <sstream>
+
+namespace Friction
+{
+  namespace
+  {
+    // An orthonormal frame whose first vector is the normal. Directions along a
+    // coordinate axis in which the displacement is prescribed come last.
+    template <int dim>
+    std::array<Tensor<1, dim>, dim>
+    make_frame(const Tensor<1, dim>              &normal,
+               const std::vector<Tensor<1, dim>> &prescribed_tangents)
+    {
+      std::array<Tensor<1, dim>, dim> frame;
+      frame[0] = normal;
+      if (dim == 2)
+        {
+          frame[1][0] = -normal[1];
+          frame[1][1] = normal[0];
+        }
+      else
+        {
+          // Gram-Schmidt, starting from what must be in the frame, and from the
+          // coordinate axis least aligned with the normal otherwise.
+          std::vector<Tensor<1, dim>> candidates = prescribed_tangents;
+          unsigned int                axis       = 0;
+          for (unsigned int d = 1; d < dim; ++d)
+            if (std::abs(normal[d]) < std::abs(normal[axis]))
+              axis = d;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              Tensor<1, dim> e;
+              e[(axis + d) % dim] = 1.;
+              candidates.push_back(e);
+            }
+          unsigned int slot = dim - 1;
+          for (auto candidate : candidates)
+            {
+              candidate -= (candidate * normal) * normal;
+              for (unsigned int s = slot + 1; s < dim; ++s)
+                candidate -= (candidate * frame[s]) * frame[s];
+              if (candidate.norm() < 0.1)
+                continue;
+              frame[slot] = candidate / candidate.norm();
+              if (--slot == 0)
+                break;
+            }
+        }
+      return frame;
+    }
+
+
+
+    template <int dim>
+    std::string
+    describe(const Point<dim> &point)
+    {
+      std::ostringstream text;
+      text << "(" << point << ")";
+      return text.str();
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  ContactBoundary<dim>::ContactBoundary(
+    const Mapping<dim>              &mapping,
+    const DoFHandler<dim>           &dof_handler,
+    const AffineConstraints<double> &hanging,
+    const NodalConstraints<dim>     &constraints,
+    const types::boundary_id         boundary_id,
+    const Obstacle<dim>             &obstacle,
+    const ContactNormal              contact_normal,
+    const bool                       ignore_prescribed_penetration)
+  {
+    // First sum up, per vertex on Gamma_S, the normals of the adjacent faces
+    // and the node's share of the boundary measure. Each process takes the
+    // faces of its own cells. Hanging nodes hand their measure on to their
+    // masters.
+    VectorType normals(constraints.partitioner());
+    VectorType measures(constraints.partitioner());
+
+    // Where the vertices are, also those of faces that are somebody else's.
+    std::map<unsigned int, Point<dim>> points;
+
+    const FE_Q<dim>       scalar_element(1);
+    const QGauss<dim - 1> quadrature(2);
+    FEFaceValues<dim>     face_values(mapping,
+                                  scalar_element,
+                                  quadrature,
+                                  update_values | update_normal_vectors |
+                                    update_JxW_values);
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (!cell->is_artificial())
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary() &&
+              cell->face(f)->boundary_id() == boundary_id)
+            {
+              const auto face = cell->face(f);
+              if (cell->is_locally_owned())
+                face_values.reinit(
+                  typename Triangulation<dim>::cell_iterator(cell), f);
+              for (unsigned int v = 0; v < face->n_vertices(); ++v)
+                {
+                  const unsigned int cell_vertex =
+                    GeometryInfo<dim>::face_to_cell_vertices(f, v);
+                  const types::global_dof_index dof =
+                    cell->vertex_dof_index(cell_vertex, 0);
+                  const unsigned int node = constraints.node_of_dof(dof);
+                  points[node]            = face->vertex(v);
+                  if (!cell->is_locally_owned())
+                    continue;
+
+                  double measure = 0;
+                  for (const unsigned int q :
+                       face_values.quadrature_point_indices())
+                    measure += face_values.shape_value(cell_vertex, q) *
+                      face_values.JxW(q);
+                  if (constraints.is_hanging(node))
+                    {
+                      for (const auto &master :
+                           *hanging.get_constraint_entries(dof))
+                        measures.local_element(
+                          dim * constraints.node_of_dof(master.first)) +=
+                          master.second * measure;
+                      continue;
+                    }
+
+                  // The manifold knows the normal of the true boundary, of
+                  // which the mesh is but a polygon.
+                  Tensor<1, dim> normal =
+                    face->get_manifold().normal_vector(face, face->vertex(v));
+                  if (normal * face_values.normal_vector(0) < 0)
+                    normal *= -1.;
+                  for (unsigned int d = 0; d < dim; ++d)
+                    normals.local_element(dim * node + d) +=
+                      measure * normal[d] / normal.norm();
+                  measures.local_element(dim * node) += measure;
+                }
+            }
+    normals.compress(VectorOperation::add);
+    measures.compress(VectorOperation::add);
+
+    on_all_processes(constraints.communicator(), [&]() {
+      for (const auto &entry : points)
+        if (!constraints.is_hanging(entry.first) &&
+            entry.first < constraints.n_owned_nodes())
+          {
+            Tensor<1, dim> normal;
+            for (unsigned int d = 0; d < dim; ++d)
+              normal[d] = normals.local_element(dim * entry.first + d);
+            add_node(entry.first,
+                     entry.second,
+                     contact_normal == ContactNormal::body
+                       ? normal / normal.norm()
+                       : obstacle.normal(entry.second),
+                     measures.local_element(dim * entry.first),
+                     constraints,
+                     obstacle,
+                     ignore_prescribed_penetration);
+          }
+    });
+  }
+
+
+
+  template <int dim>
+  void
+  ContactBoundary<dim>::add_node(const unsigned int           node,
+                                 const Point<dim>            &point,
+                                 Tensor<1, dim>               normal,
+                                 const double                 measure,
+                                 const NodalConstraints<dim> &constraints,
+                                 const Obstacle<dim>         &obstacle,
+                                 const bool ignore_prescribed_penetration)
+  {
+    // What rounding adds to the normal in a direction in which the node is
+    // held would keep the prescribed value from being read back exactly,
+    // and a node that is held at zero there from sticking.
+    for (unsigned int d = 0; d < dim; ++d)
+      if (constraints.is_prescribed(node, d) && std::abs(normal[d]) < 1e-8)
+        normal[d] = 0.;
+    const double gap = obstacle.gap(point, normal);
+    if (!std::isfinite(gap))
+      return;
+
+    Tensor<1, dim>              prescribed_value;
+    std::vector<Tensor<1, dim>> prescribed_tangents;
+    for (unsigned int d = 0; d < dim; ++d)
+      if (constraints.is_prescribed(node, d))
+        {
+          prescribed_value[d] =
+            constraints.prescribed_values().local_element(dim * node + d);
+          Tensor<1, dim> e;
+          e[d] = 1.;
+          prescribed_tangents.push_back(e);
+        }
+
+    if (constraints.is_fixed(node))
+      {
+        if (!ignore_prescribed_penetration &&
+            prescribed_value * normal - gap >
+              1e-8 * (std::abs(gap) + prescribed_value.norm()))
+          throw InputError(
+            "the prescribed displacement of the node at " + describe(point) +
+            ", which also lies on the contact boundary, pushes it into the "
+            "obstacle by " +
+            std::to_string(prescribed_value * normal - gap) +
+            ": prescribe a smaller displacement there or end the contact "
+            "boundary before that node, or set 'Contact/Ignore prescribed "
+            "penetration'.");
+        return;
+      }
+    for (const auto &e : prescribed_tangents)
+      if (std::abs(e * normal) > 1e-8)
+        throw InputError(
+          "At " + describe(point) +
+          " on the contact boundary a displacement component is prescribed "
+          "that has a part in normal direction, so that it competes with "
+          "contact: prescribe all components there, or only tangential "
+          "ones.");
+
+    nodes.push_back(
+      {node,
+       point,
+       make_frame<dim>(normal, prescribed_tangents),
+       gap,
+       measure,
+       static_cast<unsigned int>(dim - 1 - prescribed_tangents.size())});
+  }
+
+
+
+  template class ContactBoundary<2>;
+  template class ContactBoundary<3>;
+} // namespace Friction

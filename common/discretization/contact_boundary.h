@@ -1,0 +1,163 @@
+#ifndef friction_discretization_contact_boundary_h
+#define friction_discretization_contact_boundary_h
+
+#include <common/nodes/nodal_constraints.h>
+#include <common/scene/obstacle.h>
+#include <common/parameters/parameters.h>
+
+#include <deal.II/base/point.h>
+#include <deal.II/base/tensor.h>
+
+#include <deal.II/fe/mapping.h>
+
+#include <array>
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * A node of the possible contact boundary $\Gamma_S$.
+   */
+  template <int dim>
+  struct ContactNode
+  {
+    /// Local number of the node on the leaf mesh.
+    unsigned int node;
+
+    Point<dim> point;
+
+    /// The frame $e_1 = n, e_2, \ldots$ at the node: the unit normal, pointing
+    /// from the body to the obstacle, and unit tangents.
+    std::array<Tensor<1, dim>, dim> frame;
+
+    /// How far the node may move along its normal, $u_n \le g$. A length.
+    double gap;
+
+    /// The lumped boundary measure $m_p = \int_{\Gamma_S} \lambda_p$: nodal
+    /// forces divided by it are stresses. A length in 2D, an area in 3D.
+    double measure;
+
+    /// Number of tangential directions that the node may move in. The tangents
+    /// in the frame are sorted: first the free ones, then those in which the
+    /// displacement is prescribed.
+    unsigned int n_free_tangents;
+
+    const Tensor<1, dim> &
+    normal() const
+    {
+      return frame[0];
+    }
+  };
+
+
+
+  /**
+   * The nodes of $\Gamma_S$ that can get into contact. Hanging nodes follow
+   * their masters and carry nothing of their own; their share of the boundary
+   * measure goes to the masters. Nodes that are entirely prescribed, and nodes
+   * whose normal never meets the obstacle, are left out.
+   *
+   * Each process has the contact nodes that it owns.
+   */
+  template <int dim>
+  class ContactBoundary
+  {
+  public:
+    /**
+     * Collective; errors are thrown on all processes.
+     * @param ignore_prescribed_penetration  leave out nodes that are prescribed
+     *         to penetrate the obstacle, instead of throwing.
+     * @throws InputError if a node is prescribed to penetrate the obstacle, or
+     *         if a prescribed component at a contact node has a part in normal
+     *         direction, so that contact and prescribed value would compete.
+     */
+    ContactBoundary(const Mapping<dim>              &mapping,
+                    const DoFHandler<dim>           &dof_handler,
+                    const AffineConstraints<double> &hanging,
+                    const NodalConstraints<dim>     &constraints,
+                    const types::boundary_id         boundary_id,
+                    const Obstacle<dim>             &obstacle,
+                    const ContactNormal              contact_normal,
+                    const bool ignore_prescribed_penetration = false);
+
+    unsigned int
+    size() const
+    {
+      return nodes.size();
+    }
+
+    const ContactNode<dim> &
+    operator[](const unsigned int p) const
+    {
+      return nodes[p];
+    }
+
+    typename std::vector<ContactNode<dim>>::const_iterator
+    begin() const
+    {
+      return nodes.begin();
+    }
+
+    typename std::vector<ContactNode<dim>>::const_iterator
+    end() const
+    {
+      return nodes.end();
+    }
+
+  private:
+    std::vector<ContactNode<dim>> nodes;
+
+    void add_node(const unsigned int           node,
+                  const Point<dim>            &point,
+                  Tensor<1, dim>               normal,
+                  const double                 measure,
+                  const NodalConstraints<dim> &constraints,
+                  const Obstacle<dim>         &obstacle,
+                  const bool                   ignore_prescribed_penetration);
+  };
+
+
+
+  /** The normal component of the value at a contact node. */
+  template <int dim>
+  double
+  normal_component(const ContactNode<dim> &p, const VectorType &v)
+  {
+    double sum = 0;
+    for (unsigned int d = 0; d < dim; ++d)
+      sum += p.normal()[d] * v.local_element(dim * p.node + d);
+    return sum;
+  }
+
+  /**
+   * The force of the obstacle on the body at a contact node, from the residual
+   * f - A u. In a direction in which the displacement is prescribed the
+   * residual is the reaction of whatever holds the node there, and no contact
+   * force.
+   */
+  template <int dim>
+  Tensor<1, dim>
+  contact_force(const ContactNode<dim> &p, const VectorType &residual)
+  {
+    Tensor<1, dim> force;
+    for (unsigned int e = 0; e <= p.n_free_tangents; ++e)
+      for (unsigned int d = 0; d < dim; ++d)
+        force -=
+          p.frame[e][d] * residual.local_element(dim * p.node + d) * p.frame[e];
+    return force;
+  }
+
+  /** The tangential components of the value at a contact node, in its frame. */
+  template <int dim>
+  std::array<double, dim - 1>
+  tangential_components(const ContactNode<dim> &p, const VectorType &v)
+  {
+    std::array<double, dim - 1> result{};
+    for (unsigned int t = 1; t < dim; ++t)
+      for (unsigned int d = 0; d < dim; ++d)
+        result[t - 1] += p.frame[t][d] * v.local_element(dim * p.node + d);
+    return result;
+  }
+} // namespace Friction
+
+#endif

@@ -1,0 +1,195 @@
+#include <common/discretization/node_numbering.h>
+
+#include <deal.II/base/index_set.h>
+
+#include <vector>
+
+namespace Friction
+{
+  namespace
+  {
+    // Cells given by their nodes, in compressed storage with a fixed number of
+    // nodes per cell.
+    using CellNodes = std::vector<unsigned int>;
+
+
+
+    // Appends the nodes that can be reached from start nodes, level by level.
+    void
+    breadth_first_search(const std::vector<unsigned int> &start,
+                         const CellNodes                 &cell_nodes,
+                         const unsigned int               nodes_per_cell,
+                         const std::vector<unsigned int> &cells_start,
+                         const std::vector<unsigned int> &cells,
+                         std::vector<char>               &visited,
+                         std::vector<unsigned int>       &order)
+    {
+      std::size_t next = order.size();
+      for (const unsigned int node : start)
+        {
+          order.push_back(node);
+          visited[node] = 1;
+        }
+      for (; next < order.size(); ++next)
+        for (unsigned int c = cells_start[order[next]];
+             c < cells_start[order[next] + 1];
+             ++c)
+          for (unsigned int v = 0; v < nodes_per_cell; ++v)
+            {
+              const unsigned int node =
+                cell_nodes[cells[c] * nodes_per_cell + v];
+              if (!visited[node])
+                {
+                  visited[node] = 1;
+                  order.push_back(node);
+                }
+            }
+    }
+
+
+
+    // From the start nodes, if there are any; all that cannot be reached from
+    // there gets a start at its rim.
+    std::vector<unsigned int>
+    cuthill_mckee(const unsigned int               n_nodes,
+                  const CellNodes                 &cell_nodes,
+                  const unsigned int               nodes_per_cell,
+                  const std::vector<unsigned int> &start_nodes)
+    {
+      // The cells around each node.
+      std::vector<unsigned int> cells_start(n_nodes + 1, 0);
+      for (const unsigned int node : cell_nodes)
+        ++cells_start[node + 1];
+      for (unsigned int i = 0; i < n_nodes; ++i)
+        cells_start[i + 1] += cells_start[i];
+      std::vector<unsigned int> cells(cell_nodes.size());
+      std::vector<unsigned int> fill(cells_start.begin(),
+                                     cells_start.end() - 1);
+      for (std::size_t i = 0; i < cell_nodes.size(); ++i)
+        cells[fill[cell_nodes[i]]++] = i / nodes_per_cell;
+
+      std::vector<unsigned int> order;
+      std::vector<char>         visited(n_nodes, 0);
+      order.reserve(n_nodes);
+      breadth_first_search(start_nodes,
+                           cell_nodes,
+                           nodes_per_cell,
+                           cells_start,
+                           cells,
+                           visited,
+                           order);
+      for (unsigned int i = 0; i < n_nodes; ++i)
+        if (!visited[i])
+          {
+            // The node farthest from any node lies at the rim; start there.
+            const std::size_t begin = order.size();
+            breadth_first_search({i},
+                                 cell_nodes,
+                                 nodes_per_cell,
+                                 cells_start,
+                                 cells,
+                                 visited,
+                                 order);
+            const unsigned int far = order.back();
+            for (std::size_t k = begin; k < order.size(); ++k)
+              visited[order[k]] = 0;
+            order.resize(begin);
+            breadth_first_search({far},
+                                 cell_nodes,
+                                 nodes_per_cell,
+                                 cells_start,
+                                 cells,
+                                 visited,
+                                 order);
+          }
+      return order;
+    }
+
+
+
+    // The new numbers of the locally owned degrees of freedom, given the first
+    // degree of freedom of each vertex of each cell.
+    template <int dim>
+    std::vector<types::global_dof_index>
+    new_numbers(const IndexSet                             &owned,
+                const std::vector<types::global_dof_index> &vertex_dofs)
+    {
+      // Cells that are partly somebody else's repeat their first owned node in
+      // place of the others. Their owned nodes are those at an interface to
+      // other processes, and come first.
+      const unsigned int nodes_per_cell = 1u << dim;
+      const unsigned int n_nodes        = owned.n_elements() / dim;
+      CellNodes          kept;
+      std::vector<char>  at_interface(n_nodes, 0);
+      for (std::size_t c = 0; c < vertex_dofs.size(); c += nodes_per_cell)
+        {
+          unsigned int some_owned = numbers::invalid_unsigned_int;
+          unsigned int n_owned    = 0;
+          for (unsigned int v = 0; v < nodes_per_cell; ++v)
+            if (owned.is_element(vertex_dofs[c + v]))
+              {
+                some_owned = owned.index_within_set(vertex_dofs[c + v]) / dim;
+                ++n_owned;
+              }
+          if (n_owned == 0)
+            continue;
+          for (unsigned int v = 0; v < nodes_per_cell; ++v)
+            {
+              kept.push_back(owned.is_element(vertex_dofs[c + v])
+                               ? owned.index_within_set(vertex_dofs[c + v]) /
+                                 dim
+                               : some_owned);
+              if (n_owned < nodes_per_cell)
+                at_interface[kept.back()] = 1;
+            }
+        }
+
+      std::vector<unsigned int> interface;
+      for (unsigned int i = 0; i < n_nodes; ++i)
+        if (at_interface[i])
+          interface.push_back(i);
+      const std::vector<unsigned int> order =
+        cuthill_mckee(n_nodes, kept, nodes_per_cell, interface);
+      std::vector<types::global_dof_index> numbers(owned.n_elements());
+      for (unsigned int i = 0; i < n_nodes; ++i)
+        for (unsigned int d = 0; d < dim; ++d)
+          numbers[dim * order[i] + d] = owned.nth_index_in_set(dim * i + d);
+      return numbers;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  renumber_nodes(DoFHandler<dim> &dof_handler)
+  {
+    std::vector<types::global_dof_index> vertex_dofs;
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (!cell->is_artificial())
+        for (const unsigned int v : cell->vertex_indices())
+          vertex_dofs.push_back(cell->vertex_dof_index(v, 0));
+    dof_handler.renumber_dofs(
+      new_numbers<dim>(dof_handler.locally_owned_dofs(), vertex_dofs));
+
+    for (unsigned int level = 0;
+         level < dof_handler.get_triangulation().n_global_levels();
+         ++level)
+      {
+        vertex_dofs.clear();
+        for (const auto &cell : dof_handler.mg_cell_iterators_on_level(level))
+          if (cell->level_subdomain_id() != numbers::artificial_subdomain_id)
+            for (const unsigned int v : cell->vertex_indices())
+              vertex_dofs.push_back(cell->mg_vertex_dof_index(level, v, 0));
+        dof_handler.renumber_dofs(
+          level,
+          new_numbers<dim>(dof_handler.locally_owned_mg_dofs(level),
+                           vertex_dofs));
+      }
+  }
+
+
+
+  template void renumber_nodes(DoFHandler<2> &);
+  template void renumber_nodes(DoFHandler<3> &);
+} // namespace Friction

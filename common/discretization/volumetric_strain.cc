@@ -1,0 +1,81 @@
+#include <common/discretization/volumetric_strain.h>
+
+#include <deal.II/base/quadrature_lib.h>
+
+#include <algorithm>
+
+namespace Friction
+{
+  using namespace dealii;
+
+  template <int dim>
+  void
+  shape_volumetric_strains(const FEValues<dim> &fe_values,
+                           const Material      &material,
+                           Table<2, double>    &theta)
+  {
+    const FiniteElement<dim> &fe = fe_values.get_fe();
+    theta.reinit(fe_values.dofs_per_cell, fe_values.n_quadrature_points);
+    for (unsigned int i = 0; i < fe_values.dofs_per_cell; ++i)
+      {
+        const unsigned int component = fe.system_to_component_index(i).first;
+        double             volume = 0., integral = 0.;
+        for (const unsigned int q : fe_values.quadrature_point_indices())
+          {
+            theta(i, q) = fe_values.shape_grad(i, q)[component];
+            volume += fe_values.JxW(q);
+            integral += theta(i, q) * fe_values.JxW(q);
+          }
+        if (material.volumetric_strain() == VolumetricStrain::mean)
+          for (const unsigned int q : fe_values.quadrature_point_indices())
+            theta(i, q) = integral / volume;
+      }
+  }
+
+
+
+  template <int dim>
+  VolumetricStrainField<dim>::VolumetricStrainField(
+    const Mapping<dim>    &mapping,
+    const DoFHandler<dim> &dof_handler,
+    const VolumetricStrain kind,
+    const VectorType      &displacement)
+  {
+    if (kind == VolumetricStrain::pointwise)
+      return;
+
+    const QGauss<dim> quadrature(dof_handler.get_fe().degree + 1);
+    FEValues<dim>     fe_values(mapping,
+                            dof_handler.get_fe(),
+                            quadrature,
+                            update_gradients | update_JxW_values);
+    const FEValuesExtractors::Vector displacements(0);
+    std::vector<double>              divergences(quadrature.size());
+    means.resize(dof_handler.get_triangulation().n_active_cells());
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (!cell->is_artificial())
+        {
+          fe_values.reinit(cell);
+          fe_values[displacements].get_function_divergences(displacement,
+                                                            divergences);
+          double volume = 0., integral = 0.;
+          for (const unsigned int q : fe_values.quadrature_point_indices())
+            {
+              volume += fe_values.JxW(q);
+              integral += divergences[q] * fe_values.JxW(q);
+            }
+          means[cell->active_cell_index()] = integral / volume;
+        }
+  }
+
+
+
+  template void shape_volumetric_strains(const FEValues<2> &,
+                                         const Material &,
+                                         Table<2, double> &);
+  template void shape_volumetric_strains(const FEValues<3> &,
+                                         const Material &,
+                                         Table<2, double> &);
+  template class VolumetricStrainField<2>;
+  template class VolumetricStrainField<3>;
+} // namespace Friction

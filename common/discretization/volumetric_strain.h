@@ -1,0 +1,106 @@
+#ifndef friction_discretization_volumetric_strain_h
+#define friction_discretization_volumetric_strain_h
+
+#include <common/parameters/material.h>
+
+#include <deal.II/base/table.h>
+
+#include <deal.II/dofs/dof_handler.h>
+
+#include <deal.II/fe/fe_values.h>
+
+#include <deal.II/lac/la_parallel_vector.h>
+
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * The volumetric strain of each shape function at each quadrature point of
+   * the present cell, for the assembly of
+   * @f[
+   *   a(u,v)=\int \lambda\,\theta(u)\,\theta(v)
+   *          + 2\mu\,\varepsilon(u):\varepsilon(v).
+   * @f]
+   * With VolumetricStrain::pointwise it is $\theta(v)=\mathrm{div}\,v$. If the
+   * material is nearly incompressible, $\lambda\gg\mu$, this asks of a bilinear
+   * displacement to have no divergence at any of the four or eight points of
+   * each cell, and next to nothing but rigid motions is left: the elements
+   * lock. With VolumetricStrain::mean (<i>mean dilatation</i>)
+   * @f[
+   *   \theta(v)|_K = \frac1{|K|}\int_K\mathrm{div}\,v,
+   * @f]
+   * only the volume of each cell is kept. It is the displacement that the mixed
+   * method with constant pressures in the cells finds (Malkus and Hughes,
+   * Comput. Methods Appl. Mech. Engrg. 15, 1978). On parallelograms the mean is
+   * the value in the middle, and so this is selective reduced integration
+   * there; on other cells it is better, for a patch of constant stress remains
+   * exact.
+   *
+   * Only the term with $\lambda$ is averaged, not also the share of the
+   * volumetric strain in $2\mu\,\varepsilon:\varepsilon$, as in the B-bar
+   * method (Hughes, Int. J. Numer. Methods Engrg. 15, 1980). What locks is the
+   * term that grows without bound, the other differs by terms of the size of
+   * $\mu$; and as it is here, no displacement has less than its energy of
+   * shear, $2\mu\|\varepsilon(v)\|^2$, which Korn's inequality and with it the
+   * error estimator rely on, and which keeps hourglass modes away.
+   *
+   * @param theta one row per shape function, one column per point.
+   */
+  template <int dim>
+  void shape_volumetric_strains(const dealii::FEValues<dim> &fe_values,
+                                const Material              &material,
+                                dealii::Table<2, double>    &theta);
+
+
+
+  /**
+   * The volumetric strain of a discrete displacement: what has to be multiplied
+   * by $\lambda$ wherever stresses or energies are computed. It costs nothing
+   * where it is pointwise.
+   */
+  template <int dim>
+  class VolumetricStrainField
+  {
+  public:
+    using VectorType   = dealii::LinearAlgebra::distributed::Vector<double>;
+    using CellIterator = typename dealii::DoFHandler<dim>::active_cell_iterator;
+
+    /** @param displacement with ghost values and hanging nodes interpolated. */
+    VolumetricStrainField(const dealii::Mapping<dim>    &mapping,
+                          const dealii::DoFHandler<dim> &dof_handler,
+                          const VolumetricStrain         kind,
+                          const VectorType              &displacement);
+
+    bool
+    is_pointwise() const
+    {
+      return means.empty();
+    }
+
+    /** In a cell that is not artificial, at a point with this divergence. */
+    double
+    value(const CellIterator &cell, const double divergence) const
+    {
+      return is_pointwise() ? divergence : means[cell->active_cell_index()];
+    }
+
+    /** What one cell has more than another one, at a point where the divergence
+     * jumps by that much. */
+    double
+    jump(const CellIterator &cell,
+         const CellIterator &neighbor,
+         const double        divergence) const
+    {
+      return is_pointwise() ? divergence
+                            : means[cell->active_cell_index()] -
+          means[neighbor->active_cell_index()];
+    }
+
+  private:
+    // One per active cell; none where they are not needed.
+    std::vector<double> means;
+  };
+} // namespace Friction
+
+#endif

@@ -1,0 +1,279 @@
+#include <common/iteration/linearization.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace Friction
+{
+  namespace
+  {
+    double
+    norm_of(const std::array<double, 1> &u_T)
+    {
+      return std::abs(u_T[0]);
+    }
+
+    double
+    norm_of(const std::array<double, 2> &u_T)
+    {
+      return std::sqrt(u_T[0] * u_T[0] + u_T[1] * u_T[1]);
+    }
+
+    // On a line there is nothing to turn.
+    NodeBlock<2>
+    friction_curvature(const ContactNode<2> &,
+                       const std::array<double, 1> &,
+                       const double,
+                       const double)
+    {
+      return zero_block<2>();
+    }
+
+    // The second derivative of s |u_T| on the free tangents.
+    NodeBlock<3>
+    friction_curvature(const ContactNode<3>        &node,
+                       const std::array<double, 2> &u_T,
+                       const double                 s,
+                       const double                 largest)
+    {
+      const double norm   = norm_of(u_T);
+      const double factor = (s < largest * norm) ? s / norm : largest;
+
+      // Perpendicular to the slip; components that cannot move are left out.
+      const double turned[2] = {-u_T[1] / norm, u_T[0] / norm};
+      Tensor<1, 3> e;
+      NodeBlock<3> curvature;
+      for (unsigned int t = 0; t < node.n_free_tangents; ++t)
+        e += turned[t] * node.frame[t + 1];
+      for (unsigned int c = 0; c < 3; ++c)
+        for (unsigned int r = 0; r < 3; ++r)
+          curvature[c * 3 + r] = factor * e[r] * e[c];
+      return curvature;
+    }
+
+    // Whether two blocks agree within a tenth of their size, or of the
+    // stiffness that they are added to.
+    template <int dim>
+    bool
+    is_close(const NodeBlock<dim> &block,
+             const NodeBlock<dim> &other,
+             const double          stiffness)
+    {
+      double difference = 0, size = 0;
+      for (unsigned int i = 0; i < dim * dim; ++i)
+        {
+          difference += (block[i] - other[i]) * (block[i] - other[i]);
+          size += other[i] * other[i];
+        }
+      return std::sqrt(difference) <= .1 * (std::sqrt(size) + stiffness);
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Linearization<dim>::Linearization(const NodeBlockMatrix<dim>  &matrix,
+                                    const NodalConstraints<dim> &constraints,
+                                    const ContactBoundary<dim>  &contact,
+                                    const double friction_coefficient,
+                                    const TruncationVariant variant)
+    : matrix(matrix)
+    , contact(contact)
+    , friction_coefficient(friction_coefficient)
+    , variant(variant)
+    , current(constraints)
+  {
+    find_ghosts(constraints);
+  }
+
+
+
+  template <int dim>
+  void
+  Linearization<dim>::find_ghosts(const NodalConstraints<dim> &constraints)
+  {
+    const NodeNumbering &leaf = constraints.numbering();
+    if (leaf.distribution().n_processes() == 1)
+      return;
+
+    // Contact nodes have numbers of their own. Which of our ghosts is which of
+    // them their owners tell; zero means that it is none.
+    NodeNumbering numbering(
+      NodeDistribution(contact.size(), constraints.communicator()));
+    std::vector<double> number(leaf.size(), 0.);
+    for (unsigned int p = 0; p < contact.size(); ++p)
+      number[contact[p].node] = 1. + numbering.distribution().global(p);
+    const std::vector<unsigned int> ghosts = leaf.all_ghosts();
+    GhostExchange(leaf, ghosts).update(number.data(), 1);
+
+    std::vector<unsigned int> contact_ghosts;
+    for (const unsigned int node : ghosts)
+      if (number[node] > 0)
+        {
+          ghost_nodes.push_back(node);
+          contact_ghosts.push_back(
+            numbering.add(static_cast<GlobalNode>(number[node]) - 1));
+        }
+    exchange = GhostExchange(numbering, contact_ghosts);
+    exchanged.resize(2 * dim * dim * numbering.size());
+  }
+
+
+
+  template <int dim>
+  void
+  Linearization<dim>::exchange_decisions()
+  {
+    if (exchange.is_empty())
+      return;
+    constexpr unsigned int n = dim * dim;
+    for (unsigned int p = 0; p < contact.size(); ++p)
+      {
+        std::copy_n(
+          current.projector(contact[p].node).begin(), n, &exchanged[2 * n * p]);
+        std::copy_n(current.curvature(contact[p].node).begin(),
+                    n,
+                    &exchanged[2 * n * p + n]);
+      }
+    exchange.update(exchanged.data(), 2 * n);
+    for (unsigned int g = 0; g < ghost_nodes.size(); ++g)
+      {
+        NodeBlock<dim> projector, curvature;
+        const double  *values = &exchanged[2 * n * (contact.size() + g)];
+        std::copy_n(values, n, projector.begin());
+        std::copy_n(values + n, n, curvature.begin());
+        current.set(ghost_nodes[g], projector, curvature);
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  Linearization<dim>::update(const VectorType &u, const ContactState &state)
+  {
+    for (unsigned int p = 0; p < contact.size(); ++p)
+      {
+        const ContactNode<dim> &node = contact[p];
+        const bool              all_is_held =
+          state.in_contact(p) && variant == TruncationVariant::contact;
+
+        NodeBlock<dim> projector = zero_block<dim>();
+        const auto     add       = [&](const Tensor<1, dim> &direction) {
+          for (unsigned int c = 0; c < dim; ++c)
+            for (unsigned int r = 0; r < dim; ++r)
+              projector[c * dim + r] += direction[r] * direction[c];
+        };
+        if (!state.in_contact(p))
+          add(node.normal());
+        if (!state.sticks(p) && !all_is_held)
+          for (unsigned int t = 1; t <= node.n_free_tangents; ++t)
+            add(node.frame[t]);
+
+        // Everything free must be the identity to the last bit, so that the
+        // block is the leaf matrix's own.
+        if (!state.in_contact(p) && !state.sticks(p) &&
+            node.n_free_tangents == dim - 1)
+          projector = identity_block<dim>();
+
+        NodeBlock<dim> curvature = zero_block<dim>();
+        if (dim == 3 &&
+            variant != TruncationVariant::phases_without_second_order)
+          {
+            const double bound = friction_coefficient * state.normal_force(p);
+            const auto   u_T   = tangential_components<dim>(node, u);
+            const double stiffness =
+              trace<dim>(matrix.block(matrix.row_begin(node.node))) / dim;
+            if (bound > 0 && !state.sticks(p) && !all_is_held &&
+                norm_of(u_T) > 0)
+              curvature = friction_curvature(node, u_T, bound, 1e8 * stiffness);
+            if (projector == current.projector(node.node) &&
+                is_close<dim>(
+                  current.curvature(node.node), curvature, stiffness))
+              continue;
+          }
+        current.set(node.node, projector, curvature);
+      }
+    exchange_decisions();
+  }
+
+
+
+  template <int dim>
+  void
+  Linearization<dim>::linearize_residual(VectorType         &r,
+                                         const VectorType   &u,
+                                         const ContactState &state) const
+  {
+    if (state.has_friction())
+      for (unsigned int p = 0; p < contact.size(); ++p)
+        if (state.normal_force(p) > 0 && !state.sticks(p))
+          {
+            const ContactNode<dim> &node = contact[p];
+            const auto              u_T  = tangential_components<dim>(node, u);
+            const double            norm = norm_of(u_T);
+            if (norm > 0)
+              for (unsigned int t = 1; t < dim; ++t)
+                for (unsigned int d = 0; d < dim; ++d)
+                  r.local_element(dim * node.node + d) -= friction_coefficient *
+                    state.normal_force(p) * u_T[t - 1] / norm *
+                    node.frame[t][d];
+          }
+    current.apply(r.begin());
+  }
+
+
+
+  template <int dim>
+  void
+  Linearization<dim>::bounds(VectorType         &lower,
+                             VectorType         &upper,
+                             const VectorType   &u,
+                             const ContactState &state) const
+  {
+    const double infinity = std::numeric_limits<double>::infinity();
+    lower                 = -infinity;
+    upper                 = infinity;
+    for (unsigned int p = 0; p < contact.size(); ++p)
+      {
+        const ContactNode<dim> &node = contact[p];
+
+        // a.v <= b, with b >= 0 up to rounding.
+        const auto add = [&](const Tensor<1, dim> &a, const double b) {
+          double one_norm = 0;
+          for (unsigned int d = 0; d < dim; ++d)
+            one_norm += std::abs(a[d]);
+          const double side = std::max(0., b) / one_norm;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              double &lo = lower.local_element(dim * node.node + d);
+              double &up = upper.local_element(dim * node.node + d);
+              if (a[d] > 0)
+                up = std::min(up, side);
+              else if (a[d] < 0)
+                lo = std::max(lo, -side);
+            }
+        };
+
+        if (!state.in_contact(p))
+          add(node.normal(), node.gap - normal_component(node, u));
+        if (friction_coefficient * state.normal_force(p) > 0 &&
+            !state.sticks(p))
+          {
+            // The displacement keeps a part in the direction of its slip.
+            const auto     u_T  = tangential_components<dim>(node, u);
+            const double   norm = norm_of(u_T);
+            Tensor<1, dim> back;
+            for (unsigned int t = 1; t < dim; ++t)
+              back -= (norm > 0 ? u_T[t - 1] / norm : 1.) * node.frame[t];
+            add(back, norm);
+          }
+      }
+  }
+
+
+
+  template class Linearization<2>;
+  template class Linearization<3>;
+} // namespace Friction

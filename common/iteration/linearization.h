@@ -1,0 +1,103 @@
+#ifndef friction_iteration_linearization_h
+#define friction_iteration_linearization_h
+
+#include <common/discretization/contact_boundary.h>
+#include <common/contact/contact_state.h>
+#include <common/nodes/node_block_matrix.h>
+#include <common/nodes/truncation.h>
+#include <common/parallel/ghost_exchange.h>
+#include <common/parameters/solver_settings.h>
+
+namespace Friction
+{
+  /**
+   * The constrained Newton linearisation at a smoothed iterate: the phases of
+   * the contact nodes turned into free subspaces $T_p$, and the derivatives of
+   * friction on them.
+   *
+   * <table>
+   * <tr><th>phase</th><th>free subspace</th></tr>
+   * <tr><td>open</td><td>everything</td></tr>
+   * <tr><td>open, but held tangentially by given friction</td>
+   *     <td>normal direction</td></tr>
+   * <tr><td>sliding in contact</td><td>tangential plane</td></tr>
+   * <tr><td>sticking in contact</td><td>nothing</td></tr>
+   * </table>
+   * With TruncationVariant::contact nothing is free at any node in contact.
+   *
+   * In two dimensions $\omega''=0$, since $|u_T|$ is piecewise linear. In three
+   * the boundary of the friction cone is curved: turning the direction of slip
+   * costs energy, and
+   * @f[ \omega''_p = \frac{F\tau(p)}{|u_T|}
+   *     \left(I - \frac{u_T u_T^T}{|u_T|^2}\right) @f]
+   * is a matrix of rank one, whose only direction is the tangent perpendicular
+   * to the slip. It grows without bound as the slip goes to zero and is cut off
+   * where it exceeds the stiffness of the node, the mean diagonal entry of its
+   * block, by eight orders of magnitude;
+   * nothing turns there any more, and larger numbers would only cost digits.
+   *
+   * Level matrices have to be computed anew wherever $\omega''_p$ changes, and
+   * in principle it changes always and everywhere. So it is kept for as long as
+   * it is right within 10 % of itself and of the stiffness that it is added to:
+   * the line search works with the true energy anyway.
+   */
+  template <int dim>
+  class Linearization
+  {
+  public:
+    /** @p matrix and @p contact are kept by reference. Collective. */
+    Linearization(const NodeBlockMatrix<dim>  &matrix,
+                  const NodalConstraints<dim> &constraints,
+                  const ContactBoundary<dim>  &contact,
+                  const double                 friction_coefficient,
+                  const TruncationVariant      variant);
+
+    /** Determines the phases and, in three dimensions, $\omega''$; and has the
+     * neighbouring processes know them. */
+    void update(const VectorType &u, const ContactState &state);
+
+    const Truncation<dim> &
+    truncation() const
+    {
+      return current;
+    }
+
+    /** r := T (r - omega'(u)), from the residual r = f - A u. */
+    void linearize_residual(VectorType         &r,
+                            const VectorType   &u,
+                            const ContactState &state) const;
+
+    /**
+     * Cartesian bounds within which a correction of @p u is admissible and
+     * causes no change of phase, (6.12). A half space $n\cdot v\le b$ is
+     * replaced by the largest box of equal sides inside it that contains zero.
+     * A sliding node may not move back beyond the line through $u_T=0$ that is
+     * perpendicular to its slip; in two dimensions this is to say that $u_T$
+     * keeps its sign.
+     */
+    void bounds(VectorType         &lower,
+                VectorType         &upper,
+                const VectorType   &u,
+                const ContactState &state) const;
+
+  private:
+    const NodeBlockMatrix<dim> &matrix;
+    const ContactBoundary<dim> &contact;
+    const double                friction_coefficient;
+    const TruncationVariant     variant;
+    Truncation<dim>             current;
+
+    // Contact nodes of others that are ghosts here, and the exchange of what
+    // has been decided for them: projector and second derivative of the contact
+    // nodes of this process, and then of those ghosts.
+    std::vector<unsigned int> ghost_nodes;
+    GhostExchange             exchange;
+    std::vector<double>       exchanged;
+
+    void find_ghosts(const NodalConstraints<dim> &constraints);
+
+    void exchange_decisions();
+  };
+} // namespace Friction
+
+#endif

@@ -1,0 +1,85 @@
+#ifndef friction_iteration_tresca_functional_h
+#define friction_iteration_tresca_functional_h
+
+#include <common/contact/contact_state.h>
+#include <common/discretization/discrete_problem.h>
+
+namespace Friction
+{
+  /**
+   * The energy of the contact problem with given friction bounds (6.8).
+   * @f[ \hat J(u) = \tfrac12 u^T A u - f^T u + \sum_p F\tau(p)\,|u_T(p)| @f]
+   * over $u_n(p)\le g(p)$, and its exact minimisation along a line. All parts
+   * of the solver that speak of energy mean this one, evaluated here.
+   */
+  template <int dim>
+  class TrescaFunctional
+  {
+  public:
+    /** @p problem is copied; what it refers to is not. */
+    explicit TrescaFunctional(const DiscreteProblem<dim> &problem);
+
+    /** The energy. Costs a product with the stiffness matrix, for which the
+     * ghosts of @p u must be valid. Collective. */
+    double energy(const VectorType &u, const ContactState &state) const;
+
+    /** The energy, given the residual r = f - A u. Collective. */
+    double energy(const VectorType   &u,
+                  const VectorType   &r,
+                  const ContactState &state) const;
+
+    /** This process' share of it. */
+    double energy_share(const VectorType   &u,
+                        const VectorType   &r,
+                        const ContactState &state) const;
+
+    /** The largest $u_n - g$ over all contact nodes; admissible if not
+     * positive. Collective. */
+    double largest_penetration(const VectorType &u) const;
+
+    /**
+     * Changes @p v such that u + v does not penetrate the obstacle. Returns the
+     * number of this process' nodes where it had to.
+     */
+    unsigned int project(VectorType &v, const VectorType &u) const;
+
+    /**
+     * Changes @p v such that at each sliding node $(u+v)_T\cdot u_T\ge0$: no
+     * node slips back beyond the line through $u_T=0$ perpendicular to its
+     * slip. Prescribed components stay as they are. Returns the number of this
+     * process' nodes where it had to.
+     */
+    unsigned int keep_slip(VectorType         &v,
+                           const VectorType   &u,
+                           const ContactState &state) const;
+
+    /**
+     * The exact minimiser of $\hat J(u+\alpha v)$ over $0\le\alpha\le$ @p
+     * largest, the obstacle being disregarded. The energy is convex along the
+     * line and smooth but for the points where a node comes to rest, so that
+     * regula falsi on the derivative, safeguarded by bisection, finds it.
+     * Several points are tried at a time, since with several processes each
+     * trial is a reduction. Collective.
+     *
+     * @param slope      $(f - A u)\cdot v$, the decrease of the quadratic part.
+     * @param curvature  $v^T A v$.
+     */
+    double minimize_along(const VectorType   &v,
+                          const VectorType   &u,
+                          const ContactState &state,
+                          const double        slope,
+                          const double        curvature,
+                          const double        largest) const;
+
+    /** The largest factor, at most @p largest, by which @p v may be scaled so
+     * that u + v does not penetrate; at least 1 if v itself does not. */
+    double admissible_length(const VectorType &v,
+                             const VectorType &u,
+                             const double      largest) const;
+
+  private:
+    const DiscreteProblem<dim> problem;
+  };
+} // namespace Friction
+
+#endif

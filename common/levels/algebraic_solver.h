@@ -1,0 +1,143 @@
+#ifndef friction_levels_algebraic_solver_h
+#define friction_levels_algebraic_solver_h
+
+#include <common/nodes/nodal_constraints.h>
+#include <common/parameters/solver_settings.h>
+
+#include <deal.II/lac/solver_control.h>
+#include <deal.II/lac/trilinos_precondition.h>
+#include <deal.II/lac/trilinos_solver.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include <functional>
+#include <memory>
+
+namespace Friction
+{
+  /**
+   * Solves linear systems of which nothing is known but the matrix, by
+   * Trilinos: by a sparse factorisation as long as that is the quicker way,
+   * otherwise by conjugate gradients preconditioned with algebraic multigrid
+   * (smoothed aggregation, Vanek, Mandel, Brezina 1996).
+   *
+   * The matrix is symmetric and positive definite, up to directions that right
+   * hand sides have no part in; its rows may be owned by any of the processes,
+   * all of a node's components by the same one.
+   *
+   * Matrices of contact problems change a little whenever a node changes its
+   * phase. The hierarchy of algebraic multigrid is not made anew each time,
+   * because it is only a preconditioner: it is kept, together with a copy of
+   * the matrix it was made of, until conjugate gradients take noticeably longer
+   * than they did when it was new. The copy is what keeps the preconditioner
+   * positive definite; smoothers that had seen one matrix and are applied to
+   * another might not be.
+   *
+   * Within a multigrid cycle nobody needs more than a few digits. Iterations
+   * stop when the energy norm of the error, as the preconditioner sees it,
+   * has come down to #tolerance. Stopping early is no harm to a descent method:
+   * each iterate of conjugate gradients that start at zero lowers the energy
+   * more than the one before.
+   */
+  class AlgebraicSolver
+  {
+  public:
+    /// Projects onto a subspace, orthogonally.
+    using Projection = std::function<void(VectorType &)>;
+
+    /** Relative energy norm of the error at which conjugate gradients stop. */
+    static constexpr double tolerance = 1e-3;
+
+    /** Up to this number of unknowns CoarsestMethod::automatic is direct. It is
+     * also where algebraic multigrid itself stops coarsening. */
+    static constexpr types::global_dof_index largest_direct_size = 2000;
+
+    /**
+     * @param n_components  of a node; component c of node i has the number
+     *                      n_components * i + c.
+     */
+    AlgebraicSolver(const CoarsestMethod method,
+                    const unsigned int   n_components);
+
+    /**
+     * Is told the matrix for the calls of solve() that follow, and again
+     * whenever its entries have changed. It is kept by reference.
+     */
+    void initialize(const TrilinosWrappers::SparseMatrix &matrix);
+
+    /** Solves A x = b; the initial value of x does not matter. */
+    void solve(VectorType &x, const VectorType &b);
+
+    /**
+     * Minimises $\frac12 x^TAx-b^Tx$ in a subspace, by conjugate gradients;
+     * what the solver has prepared for the whole space is projected to serve as
+     * the preconditioner. If the subspace lacks few directions only, these cost
+     * one iteration each at most.
+     */
+    void solve_in_subspace(VectorType       &x,
+                           const VectorType &b,
+                           const Projection &project);
+
+    bool
+    is_direct() const
+    {
+      return factorization != nullptr;
+    }
+
+    /** Conjugate gradient iterations in the last solution; 0 if direct. */
+    unsigned int
+    n_iterations() const
+    {
+      return last_iterations;
+    }
+
+    /** How often a factorisation or a hierarchy has been made. */
+    unsigned int
+    n_setups() const
+    {
+      return setups;
+    }
+
+  private:
+    enum class Outcome
+    {
+      converged,
+      slow,  // too many iterations; what there is lowers the energy
+      broken // a direction without energy
+    };
+
+    const CoarsestMethod                  method;
+    const unsigned int                    n_components;
+    const TrilinosWrappers::SparseMatrix *matrix = nullptr;
+
+    // The factorisation, and the matrix it belongs to if that is not the given
+    // one.
+    SolverControl                                   control;
+    TrilinosWrappers::SparseMatrix                  shifted_matrix;
+    std::unique_ptr<TrilinosWrappers::SolverDirect> factorization;
+
+    TrilinosWrappers::SparseMatrix                     hierarchy_matrix;
+    std::unique_ptr<TrilinosWrappers::PreconditionAMG> hierarchy;
+
+    bool         is_current      = false; // made of the present matrix
+    bool         is_worn_out     = false; // the hierarchy
+    unsigned int new_iterations  = 0;     // when the hierarchy was new
+    unsigned int last_iterations = 0;
+    unsigned int setups          = 0;
+
+    VectorType residual, direction, preconditioned, image;
+
+    void factorize();
+
+    void make_hierarchy();
+
+    void iterate(VectorType &x, const VectorType &b, const Projection &project);
+
+    Outcome conjugate_gradients(VectorType       &x,
+                                const VectorType &b,
+                                const Projection &project);
+
+    void precondition(VectorType &x, const VectorType &b);
+  };
+} // namespace Friction
+
+#endif

@@ -1,0 +1,90 @@
+#include <common/nodes/interface_damping.h>
+
+#include <Eigen/Dense>
+
+namespace Friction
+{
+  namespace
+  {
+    // How much of the decrease that the diagonal gives is to remain.
+    constexpr double remains = .25;
+
+    template <int dim>
+    using Matrix = Eigen::Matrix<double, dim, dim>;
+
+    template <int dim>
+    bool
+    couples_to_ghosts(const NodeBlockMatrix<dim> &A, const unsigned int row)
+    {
+      for (std::size_t e = A.row_begin(row); e < A.row_end(row); ++e)
+        if (A.column(e) >= A.n_rows())
+          return true;
+      return false;
+    }
+
+    template <int dim>
+    NodeBlock<dim>
+    symmetric_block(const Matrix<dim> &matrix)
+    {
+      NodeBlock<dim> result;
+      for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int r = 0; r < dim; ++r)
+          result[c * dim + r] = .5 * (matrix(r, c) + matrix(c, r));
+      return result;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  NodeBlock<dim>
+  interface_majorant(const NodeBlockMatrix<dim> &A, const unsigned int row)
+  {
+    if (!couples_to_ghosts(A, row))
+      return zero_block<dim>();
+
+    Matrix<dim> majorant = Matrix<dim>::Zero();
+    for (std::size_t e = A.row_begin(row); e < A.row_end(row); ++e)
+      if (A.column(e) >= A.n_rows())
+        {
+          const Eigen::JacobiSVD<Matrix<dim>> svd(
+            Matrix<dim>(Eigen::Map<const Matrix<dim>>(A.block(e))),
+            Eigen::ComputeFullU);
+          majorant += svd.matrixU() * svd.singularValues().asDiagonal() *
+            svd.matrixU().transpose();
+        }
+    return symmetric_block<dim>(majorant);
+  }
+
+
+
+  template <int dim>
+  NodeBlock<dim>
+  interface_damping(const NodeBlockMatrix<dim> &A, const unsigned int row)
+  {
+    if (!couples_to_ghosts(A, row))
+      return zero_block<dim>();
+
+    const NodeBlock<dim> majorant = interface_majorant(A, row);
+    const Matrix<dim> lacking = Eigen::Map<const Matrix<dim>>(majorant.data()) -
+      (1. - remains) * Eigen::Map<const Matrix<dim>>(A.block(A.row_begin(row)));
+    const Eigen::SelfAdjointEigenSolver<Matrix<dim>> eigen(
+      Matrix<dim>(.5 * (lacking + lacking.transpose())));
+    if (!(eigen.eigenvalues().maxCoeff() > 0))
+      return zero_block<dim>();
+    return symmetric_block<dim>(.5 * eigen.eigenvectors() *
+                                eigen.eigenvalues().cwiseMax(0.).asDiagonal() *
+                                eigen.eigenvectors().transpose());
+  }
+
+
+
+  template NodeBlock<2> interface_majorant(const NodeBlockMatrix<2> &,
+                                           const unsigned int);
+  template NodeBlock<3> interface_majorant(const NodeBlockMatrix<3> &,
+                                           const unsigned int);
+  template NodeBlock<2> interface_damping(const NodeBlockMatrix<2> &,
+                                          const unsigned int);
+  template NodeBlock<3> interface_damping(const NodeBlockMatrix<3> &,
+                                          const unsigned int);
+} // namespace Friction

@@ -1,0 +1,147 @@
+#include <common/nodes/node_block_matrix.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace Friction
+{
+  void
+  NodePattern::append_row(std::vector<unsigned int> &row_columns)
+  {
+    const unsigned int row = n_rows();
+    std::sort(row_columns.begin(), row_columns.end());
+    const auto diagonal =
+      std::find(row_columns.begin(), row_columns.end(), row);
+    if (diagonal != row_columns.end())
+      std::rotate(row_columns.begin(), diagonal, diagonal + 1);
+    columns.insert(columns.end(), row_columns.begin(), row_columns.end());
+    starts.push_back(columns.size());
+  }
+
+
+
+  template <int dim>
+  NodeBlockMatrix<dim>::NodeBlockMatrix(
+    std::shared_ptr<const NodePattern> pattern)
+    : pattern(std::move(pattern))
+    , row_starts(this->pattern->starts.data())
+    , columns(this->pattern->columns.data())
+    , values(this->pattern->columns.size() * (dim * dim), 0.)
+  {}
+
+
+
+  template <int dim>
+  std::size_t
+  NodeBlockMatrix<dim>::find(const unsigned int row,
+                             const unsigned int column) const
+  {
+    const std::size_t begin = row_starts[row], end = row_starts[row + 1];
+    if (begin == end || columns[begin] == column)
+      return begin;
+    const auto last = columns + end;
+    const auto it   = std::lower_bound(columns + begin + 1, last, column);
+    return (it != last && *it == column) ? it - columns : end;
+  }
+
+
+
+  template <int dim>
+  void
+  NodeBlockMatrix<dim>::vmult(double *y, const double *x) const
+  {
+    for (unsigned int i = 0; i < n_rows(); ++i)
+      {
+        const NodeValue<dim> value = row_times(i, x);
+        for (int d = 0; d < dim; ++d)
+          y[dim * i + d] = value[d];
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  NodeBlockMatrix<dim>::residual(double       *r,
+                                 const double *b,
+                                 const double *x) const
+  {
+    residual(r, b, x, 0, n_rows());
+  }
+
+
+
+  template <int dim>
+  void
+  NodeBlockMatrix<dim>::residual(double            *r,
+                                 const double      *b,
+                                 const double      *x,
+                                 const unsigned int begin,
+                                 const unsigned int end) const
+  {
+    for (unsigned int i = begin; i < end; ++i)
+      {
+        const NodeValue<dim> value = row_times(i, x);
+        for (int d = 0; d < dim; ++d)
+          r[dim * i + d] = b[dim * i + d] - value[d];
+      }
+  }
+
+
+
+  template <int dim>
+  std::size_t
+  NodeBlockMatrix<dim>::memory_consumption() const
+  {
+    return (pattern == nullptr ? 0 : pattern->memory_consumption()) +
+      values.capacity() * sizeof(double);
+  }
+
+
+
+  template <int dim>
+  void
+  relax_nodes(const NodeBlockMatrix<dim>                  &A,
+              const std::vector<NodeBlock<dim>>           &inverse_diagonal,
+              const std::pair<unsigned int, unsigned int> &nodes,
+              const double                                *b,
+              double                                      *x,
+              const bool                                   backwards)
+  {
+    const auto relax = [&](const unsigned int i) {
+      const NodeValue<dim> product = A.row_times(i, x);
+      NodeValue<dim>       defect;
+      for (int d = 0; d < dim; ++d)
+        defect[d] = b[dim * i + d] - product[d];
+      const NodeValue<dim> correction =
+        times<dim>(inverse_diagonal[i].data(), defect.data());
+      for (int d = 0; d < dim; ++d)
+        x[dim * i + d] += correction[d];
+    };
+
+    if (!backwards)
+      for (unsigned int i = nodes.first; i < nodes.second; ++i)
+        relax(i);
+    else
+      for (unsigned int i = nodes.second; i-- > nodes.first;)
+        relax(i);
+  }
+
+
+
+  template class NodeBlockMatrix<2>;
+  template class NodeBlockMatrix<3>;
+
+  template void relax_nodes(const NodeBlockMatrix<2> &,
+                            const std::vector<NodeBlock<2>> &,
+                            const std::pair<unsigned int, unsigned int> &,
+                            const double *,
+                            double *,
+                            const bool);
+  template void relax_nodes(const NodeBlockMatrix<3> &,
+                            const std::vector<NodeBlock<3>> &,
+                            const std::pair<unsigned int, unsigned int> &,
+                            const double *,
+                            double *,
+                            const bool);
+} // namespace Friction

@@ -1,0 +1,238 @@
+#ifndef friction_nodes_node_block_matrix_h
+#define friction_nodes_node_block_matrix_h
+
+#include <common/nodes/node_block.h>
+
+#include <cstddef>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * Which blocks a matrix has, in compressed row storage: the columns of each
+   * row, the diagonal first and the others ascending.
+   */
+  struct NodePattern
+  {
+    std::vector<std::size_t>  starts = {0}; ///< n_rows + 1 of them
+    std::vector<unsigned int> columns;
+
+    unsigned int
+    n_rows() const
+    {
+      return starts.size() - 1;
+    }
+
+    /** Takes @p row_columns, which it sorts, as the columns of the next row. */
+    void append_row(std::vector<unsigned int> &row_columns);
+
+    std::size_t
+    memory_consumption() const
+    {
+      return starts.capacity() * sizeof(std::size_t) +
+        columns.capacity() * sizeof(unsigned int);
+    }
+  };
+
+
+
+  /**
+   * A sparse matrix of dense dim x dim blocks, one row of blocks per node.
+   *
+   * Everything the method does is nodewise: relaxation solves a dim x dim
+   * problem at each node, truncation acts on the blocks of a node. Storing one
+   * column index per block instead of one per entry also makes a relaxation
+   * sweep read a third less memory, and memory is what a sweep waits for.
+   *
+   * Rows are the locally owned nodes; columns count owned nodes first and ghost
+   * nodes after them, as the local elements of
+   * LinearAlgebra::distributed::Vector do, so that a vector enters as a plain
+   * pointer to its local values, node by node. The first entry of each row is
+   * the diagonal block, the others follow by ascending column.
+   */
+  template <int dim>
+  class NodeBlockMatrix
+  {
+  public:
+    NodeBlockMatrix() = default;
+
+    /** A zero matrix with given pattern, which several matrices may share. */
+    explicit NodeBlockMatrix(std::shared_ptr<const NodePattern> pattern);
+
+    unsigned int
+    n_rows() const
+    {
+      return pattern == nullptr ? 0 : pattern->n_rows();
+    }
+
+    std::size_t
+    n_blocks() const
+    {
+      return pattern == nullptr ? 0 : pattern->columns.size();
+    }
+
+    /** The position of the first block of a row, which is the diagonal one. */
+    std::size_t
+    row_begin(const unsigned int row) const
+    {
+      return row_starts[row];
+    }
+
+    std::size_t
+    row_end(const unsigned int row) const
+    {
+      return row_starts[row + 1];
+    }
+
+    unsigned int
+    column(const std::size_t position) const
+    {
+      return columns[position];
+    }
+
+    /** The dim*dim values of the block at a position, column by column. */
+    double *
+    block(const std::size_t position)
+    {
+      return values.data() + position * (dim * dim);
+    }
+
+    const double *
+    block(const std::size_t position) const
+    {
+      return values.data() + position * (dim * dim);
+    }
+
+    /** The position of block (row,column), or row_end(row) if there is none. */
+    std::size_t find(const unsigned int row, const unsigned int column) const;
+
+    /** The value of row @p row of the product A x. */
+    NodeValue<dim> row_times(const unsigned int row, const double *x) const;
+
+    /** Has the memory of a row brought closer, for use in the near future. */
+    void
+    prefetch(const unsigned int row) const
+    {
+      const char *begin =
+        reinterpret_cast<const char *>(block(row_starts[row]));
+      const char *end =
+        reinterpret_cast<const char *>(block(row_starts[row + 1]));
+      for (; begin < end; begin += 64)
+        __builtin_prefetch(begin);
+      __builtin_prefetch(columns + row_starts[row]);
+    }
+
+    /** y = A x. */
+    void vmult(double *y, const double *x) const;
+
+    /** r = b - A x. */
+    void residual(double *r, const double *b, const double *x) const;
+
+    /** The same for the rows from begin to end-1 only. */
+    void residual(double            *r,
+                  const double      *b,
+                  const double      *x,
+                  const unsigned int begin,
+                  const unsigned int end) const;
+
+    /** Memory in bytes. */
+    std::size_t memory_consumption() const;
+
+  private:
+    std::shared_ptr<const NodePattern> pattern;
+    const std::size_t                 *row_starts = nullptr;
+    const unsigned int                *columns    = nullptr;
+    std::vector<double>                values;
+  };
+
+
+
+  /**
+   * Nodes to be relaxed, as ranges [first,second) of consecutive numbers: the
+   * sweep then needs no test per node.
+   */
+  using NodeRanges = std::vector<std::pair<unsigned int, unsigned int>>;
+
+  /** Appends a node with a number larger than all before. */
+  inline void
+  append(NodeRanges &ranges, const unsigned int node)
+  {
+    if (!ranges.empty() && ranges.back().second == node)
+      ++ranges.back().second;
+    else
+      ranges.emplace_back(node, node + 1);
+  }
+
+  /**
+   * Block Gauss-Seidel for A x = b over the nodes of a range, in ascending
+   * order or, backwards, in descending order.
+   * @param inverse_diagonal  one block per row: the (pseudo-)inverse of the
+   *                          diagonal block; a zero block leaves its node
+   * alone.
+   */
+  template <int dim>
+  void relax_nodes(const NodeBlockMatrix<dim>        &A,
+                   const std::vector<NodeBlock<dim>> &inverse_diagonal,
+                   const std::pair<unsigned int, unsigned int> &nodes,
+                   const double                                *b,
+                   double                                      *x,
+                   const bool                                   backwards);
+
+
+
+  // The innermost loop of everything, hence inline. The compiler's own vector
+  // type makes each column of a block one instruction in two dimensions; in
+  // three it takes two rows at once, and the third on its own. Each column has
+  // sums of its own: with a single one every addition would have to wait for
+  // the one before.
+  template <int dim>
+  inline NodeValue<dim>
+  NodeBlockMatrix<dim>::row_times(const unsigned int row, const double *x) const
+  {
+    const std::size_t   end = row_starts[row + 1];
+    const double       *a   = values.data() + row_starts[row] * (dim * dim);
+    const unsigned int *c   = columns;
+    NodeValue<dim>      y;
+    typedef double      Pair __attribute__((vector_size(16), aligned(8)));
+    if constexpr (dim == 2)
+      {
+        Pair sum0 = {0., 0.}, sum1 = {0., 0.};
+        for (std::size_t e = row_starts[row]; e < end; ++e, a += 4)
+          {
+            const double *xe = x + 2 * static_cast<std::size_t>(c[e]);
+            const Pair    x0 = {xe[0], xe[0]}, x1 = {xe[1], xe[1]};
+            sum0 += *reinterpret_cast<const Pair *>(a) * x0;
+            sum1 += *reinterpret_cast<const Pair *>(a + 2) * x1;
+          }
+        sum0 += sum1;
+        y[0] = sum0[0];
+        y[1] = sum0[1];
+      }
+    else
+      {
+        Pair   sum0 = {0., 0.}, sum1 = {0., 0.}, sum2 = {0., 0.};
+        double last0 = 0., last1 = 0., last2 = 0.;
+        for (std::size_t e = row_starts[row]; e < end; ++e, a += 9)
+          {
+            const double *xe = x + 3 * static_cast<std::size_t>(c[e]);
+            const Pair    x0 = {xe[0], xe[0]}, x1 = {xe[1], xe[1]},
+                       x2 = {xe[2], xe[2]};
+            sum0 += *reinterpret_cast<const Pair *>(a) * x0;
+            sum1 += *reinterpret_cast<const Pair *>(a + 3) * x1;
+            sum2 += *reinterpret_cast<const Pair *>(a + 6) * x2;
+            last0 += a[2] * xe[0];
+            last1 += a[5] * xe[1];
+            last2 += a[8] * xe[2];
+          }
+        sum0 += sum1 + sum2;
+        y[0] = sum0[0];
+        y[1] = sum0[1];
+        y[2] = last0 + last1 + last2;
+      }
+    return y;
+  }
+} // namespace Friction
+
+#endif

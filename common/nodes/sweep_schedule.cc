@@ -1,0 +1,114 @@
+#include <common/nodes/sweep_schedule.h>
+
+namespace Friction
+{
+  template <int dim>
+  SweepSchedule<dim>::SweepSchedule(const NodeBlockMatrix<dim> &matrix,
+                                    const NodeRanges           &nodes,
+                                    const unsigned int          chunk_size)
+    : chunk_size(chunk_size)
+  {
+    const unsigned int n_nodes = matrix.n_rows();
+    for (unsigned int start = 0; start < n_nodes; start += chunk_size)
+      chunk_starts.push_back(start);
+    chunk_starts.push_back(n_nodes);
+
+    ranges.resize(n_chunks());
+    for (const auto &range : nodes)
+      for (unsigned int begin = range.first; begin < range.second;)
+        {
+          const unsigned int c   = chunk_of(begin);
+          const unsigned int end = std::min(range.second, chunk_starts[c + 1]);
+          ranges[c].emplace_back(begin, end);
+          begin = end;
+        }
+
+    at_interface.assign(n_chunks(), 0);
+    reach_up.resize(n_chunks());
+    reach_down.resize(n_chunks());
+    for (unsigned int c = 0; c < n_chunks(); ++c)
+      {
+        unsigned int first = chunk_starts[c], last = chunk_starts[c + 1] - 1;
+        for (std::size_t e = matrix.row_begin(chunk_starts[c]);
+             e < matrix.row_begin(chunk_starts[c + 1]);
+             ++e)
+          if (matrix.column(e) < n_nodes)
+            {
+              first = std::min(first, matrix.column(e));
+              last  = std::max(last, matrix.column(e));
+            }
+          else
+            at_interface[c] = 1;
+        reach_down[c] = chunk_of(first);
+        reach_up[c]   = chunk_of(last);
+      }
+
+    // A stage never overtakes, so that the bounds may as well be monotone.
+    for (unsigned int c = 1; c < n_chunks(); ++c)
+      reach_up[c] = std::max(reach_up[c], reach_up[c - 1]);
+    for (unsigned int c = n_chunks(); c-- > 1;)
+      reach_down[c - 1] = std::min(reach_down[c - 1], reach_down[c]);
+  }
+
+
+
+  template <int dim>
+  void
+  gauss_seidel_sweeps(const SweepSchedule<dim>          &schedule,
+                      const NodeBlockMatrix<dim>        &A,
+                      const std::vector<NodeBlock<dim>> &inverse_diagonal,
+                      const double                      *b,
+                      double                            *x,
+                      const bool                         backwards,
+                      const unsigned int                 n_sweeps,
+                      GhostExchange                     &ghosts,
+                      double                            *residual)
+  {
+    schedule.run(
+      n_sweeps,
+      residual != nullptr,
+      backwards,
+      [&](const unsigned int stage, const unsigned int c) {
+        if (stage == n_sweeps)
+          A.residual(
+            residual, b, x, schedule.chunk(c).first, schedule.chunk(c).second);
+        else
+          {
+            const NodeRanges &nodes = schedule.nodes(c);
+            for (unsigned int i = 0; i < nodes.size(); ++i)
+              relax_nodes<dim>(A,
+                               inverse_diagonal,
+                               nodes[backwards ? nodes.size() - 1 - i : i],
+                               b,
+                               x,
+                               backwards);
+          }
+      },
+      ghosts,
+      x);
+  }
+
+
+
+  template class SweepSchedule<2>;
+  template class SweepSchedule<3>;
+
+  template void gauss_seidel_sweeps(const SweepSchedule<2> &,
+                                    const NodeBlockMatrix<2> &,
+                                    const std::vector<NodeBlock<2>> &,
+                                    const double *,
+                                    double *,
+                                    const bool,
+                                    const unsigned int,
+                                    GhostExchange &,
+                                    double *);
+  template void gauss_seidel_sweeps(const SweepSchedule<3> &,
+                                    const NodeBlockMatrix<3> &,
+                                    const std::vector<NodeBlock<3>> &,
+                                    const double *,
+                                    double *,
+                                    const bool,
+                                    const unsigned int,
+                                    GhostExchange &,
+                                    double *);
+} // namespace Friction

@@ -1,0 +1,34 @@
+#ifndef friction_parameters_parameter_entries_h
+#define friction_parameters_parameter_entries_h
+
+#include <deal.II/base/patterns.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * One thing that a scene file may say.
+   */
+  struct ParameterEntry
+  {
+    std::string                                    section;
+    std::string                                    name;
+    std::string                                    default_value;
+    std::shared_ptr<dealii::Patterns::PatternBase> pattern;
+    std::string                                    documentation;
+
+    std::string
+    path() const
+    {
+      return section + "/" + name;
+    }
+  };
+
+  /** Everything that a scene file may say, in the order of the sections. */
+  const std::vector<ParameterEntry> &parameter_entries();
+} // namespace Friction
+
+#endif

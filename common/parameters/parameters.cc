@@ -1,0 +1,815 @@
+#include <common/parameters/parameter_entries.h>
+#include <common/parameters/parameters.h>
+#include <common/scene/parse_function.h>
+
+#include <deal.II/base/numbers.h>
+#include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/patterns.h>
+#include <deal.II/base/utilities.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <fstream>
+#include <memory>
+#include <sstream>
+
+namespace Friction
+{
+  using namespace dealii;
+
+  namespace
+  {
+    void
+    declare_parameters(ParameterHandler &prm)
+    {
+      for (const ParameterEntry &entry : parameter_entries())
+        {
+          prm.enter_subsection(entry.section);
+          prm.declare_entry(entry.name,
+                            entry.default_value,
+                            *entry.pattern,
+                            entry.documentation);
+          prm.leave_subsection();
+        }
+    }
+
+
+
+    // What a pattern accepts, for the end of a sentence.
+    std::string
+    wanted(const Patterns::PatternBase &pattern)
+    {
+      std::string text = pattern.description(Patterns::PatternBase::Text);
+      if (text.find("1e-300") != text.npos)
+        return "a positive number";
+      // The descriptions begin sentences and name limits that nobody meets.
+      text[0]            = std::tolower(text[0]);
+      const auto replace = [&](const std::string &from, const std::string &to) {
+        const auto position = text.find(from);
+        if (position != text.npos)
+          text.replace(position, from.size(), to);
+      };
+      replace("floating point number", "number");
+      replace(" v such that -MAX_DOUBLE <= v <= MAX_DOUBLE", "");
+      replace(" <= 2147483647", "");
+      return text;
+    }
+
+
+
+    std::string
+    lower_case(std::string s)
+    {
+      std::transform(s.begin(), s.end(), s.begin(), [](const unsigned char c) {
+        return std::tolower(c);
+      });
+      return s;
+    }
+
+
+
+    // Number of insertions, deletions and replacements that make one string
+    // the other, not looking at upper and lower case.
+    unsigned int
+    edit_distance(const std::string &first, const std::string &second)
+    {
+      const std::string         a = lower_case(first), b = lower_case(second);
+      std::vector<unsigned int> row(b.size() + 1);
+      for (unsigned int j = 0; j <= b.size(); ++j)
+        row[j] = j;
+      for (unsigned int i = 1; i <= a.size(); ++i)
+        {
+          unsigned int diagonal = row[0];
+          row[0]                = i;
+          for (unsigned int j = 1; j <= b.size(); ++j)
+            {
+              const unsigned int replace =
+                diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+              diagonal = row[j];
+              row[j]   = std::min({row[j] + 1, row[j - 1] + 1, replace});
+            }
+        }
+      return row[b.size()];
+    }
+
+
+
+    std::string
+    nearest(const std::string &name, const std::vector<std::string> &known)
+    {
+      return *std::min_element(known.begin(),
+                               known.end(),
+                               [&](const std::string &a, const std::string &b) {
+                                 return edit_distance(name, a) <
+                                   edit_distance(name, b);
+                               });
+    }
+
+
+
+    // The values of all entries, and where each was set, so that an error found
+    // later can still point to the place.
+    class Values
+    {
+    public:
+      Values()
+      {
+        declare_parameters(prm);
+      }
+
+      void
+      set(const std::string &path,
+          const std::string &value,
+          const std::string &where)
+      {
+        const auto entry = std::find_if(
+          parameter_entries().begin(),
+          parameter_entries().end(),
+          [&](const ParameterEntry &e) { return e.path() == path; });
+        if (entry == parameter_entries().end())
+          {
+            std::vector<std::string> known;
+            for (const ParameterEntry &e : parameter_entries())
+              known.push_back(e.path());
+            throw InputError(where + ": there is no entry '" + path +
+                             "'; did you mean '" + nearest(path, known) + "'?");
+          }
+        if (!entry->pattern->match(value))
+          throw InputError(where + ": '" + value + "' is no value for '" +
+                           path + "'; give " + wanted(*entry->pattern) + ".");
+        prm.enter_subsection(entry->section);
+        prm.set(entry->name, value);
+        prm.leave_subsection();
+        origin[path] = where;
+      }
+
+      std::string
+      get(const std::string &path)
+      {
+        const auto slash = path.find('/');
+        prm.enter_subsection(path.substr(0, slash));
+        const std::string value = prm.get(path.substr(slash + 1));
+        prm.leave_subsection();
+        return value;
+      }
+
+      double
+      number(const std::string &path)
+      {
+        return Utilities::string_to_double(get(path));
+      }
+
+      unsigned int
+      integer(const std::string &path)
+      {
+        return Utilities::string_to_int(get(path));
+      }
+
+      unsigned int
+      steps(const std::string &path, const unsigned int automatic)
+      {
+        return get(path) == "automatic" ? automatic : integer(path);
+      }
+
+      bool
+      flag(const std::string &path)
+      {
+        const std::string value = get(path);
+        return value == "true" || value == "yes";
+      }
+
+      // "where: 'Section/Entry'", the beginning of a sentence.
+      std::string
+      subject(const std::string &path) const
+      {
+        const auto where = origin.find(path);
+        return (where == origin.end() ? std::string("default value")
+                                      : where->second) +
+          ": '" + path + "'";
+      }
+
+      std::string
+      text()
+      {
+        std::ostringstream out;
+        prm.print_parameters(out,
+                             ParameterHandler::ShortPRM |
+                               ParameterHandler::KeepDeclarationOrder);
+        return out.str();
+      }
+
+    private:
+      ParameterHandler                   prm;
+      std::map<std::string, std::string> origin;
+    };
+
+
+
+    // ParameterHandler could read the file itself, but its messages neither
+    // name the nearest entry nor fit one line. The format is simple enough.
+    void
+    read_file(const std::string &file_name, Values &values)
+    {
+      std::ifstream file(file_name);
+      std::string   line;
+      if (!file || file.peek() == std::ifstream::traits_type::eof())
+        throw InputError(
+          (file.is_open() ? "there is nothing in the scene file '"
+                          : "cannot read the scene file '") +
+          file_name + "'; give the path of an existing, readable scene.");
+
+      std::vector<std::string> sections;
+      for (const ParameterEntry &entry : parameter_entries())
+        if (sections.empty() || sections.back() != entry.section)
+          sections.push_back(entry.section);
+
+      std::string  section;
+      unsigned int n_lines = 0, section_line = 0;
+      const auto   is_word = [](const std::string &text, const std::string &w) {
+        return text.compare(0, w.size(), w) == 0 &&
+          (text.size() == w.size() || std::isspace(text[w.size()]));
+      };
+      while (std::getline(file, line))
+        {
+          ++n_lines;
+          const std::string where =
+            file_name + ":" + Utilities::int_to_string(n_lines);
+
+          // A backslash at the end continues the line; '#' starts a comment.
+          const auto clean = [](const std::string &raw) {
+            return Utilities::trim(raw.substr(0, raw.find('#')));
+          };
+          line = clean(line);
+          std::string more;
+          while (!line.empty() && line.back() == '\\')
+            {
+              line.pop_back();
+              if (!std::getline(file, more))
+                break;
+              ++n_lines;
+              line = Utilities::trim(line) + " " + clean(more);
+            }
+          if (line.empty())
+            continue;
+
+          if (is_word(line, "subsection"))
+            {
+              const std::string name = Utilities::trim(line.substr(10));
+              if (!section.empty())
+                throw InputError(where + ": section '" + name +
+                                 "' begins inside section '" + section +
+                                 "'; close that one with 'end' first.");
+              if (std::find(sections.begin(), sections.end(), name) ==
+                  sections.end())
+                throw InputError(where + ": there is no section '" + name +
+                                 "'; did you mean '" + nearest(name, sections) +
+                                 "'?");
+              section      = name;
+              section_line = n_lines;
+            }
+          else if (line == "end")
+            {
+              if (section.empty())
+                throw InputError(where +
+                                 ": 'end' closes no section; "
+                                 "remove it.");
+              section.clear();
+            }
+          else if (is_word(line, "set") && line.find('=') != line.npos)
+            {
+              const auto        equal = line.find('=');
+              const std::string name =
+                Utilities::trim(line.substr(3, equal - 3));
+              const std::string value = Utilities::trim(line.substr(equal + 1));
+              values.set(
+                section.empty() ? name : section + "/" + name, value, where);
+            }
+          else
+            throw InputError(where + ": '" + line +
+                             "' is neither 'subsection <name>', 'set <entry> = "
+                             "<value>' nor 'end'; correct the line.");
+        }
+      if (!section.empty())
+        throw InputError(
+          file_name + ":" + Utilities::int_to_string(section_line) +
+          ": section '" + section + "' is not closed; add a line 'end'.");
+    }
+
+
+
+    void
+    read_override(const std::string &text, Values &values)
+    {
+      const auto equal = text.find('=');
+      const auto slash = text.find('/');
+      if (equal == text.npos || slash == text.npos || slash > equal)
+        throw InputError("override '" + text +
+                         "': this is not of the form Section/Entry=value; "
+                         "quote it if it contains blanks.");
+      values.set(Utilities::trim(text.substr(0, equal)),
+                 Utilities::trim(text.substr(equal + 1)),
+                 "override '" + text + "'");
+    }
+
+
+
+    // Split at a character, but not inside parentheses, and trim the parts.
+    // Nothing makes no part.
+    std::vector<std::string>
+    split(const std::string &text, const char separator)
+    {
+      std::vector<std::string> parts;
+      if (Utilities::trim(text).empty())
+        return parts;
+      int         depth = 0;
+      std::string part;
+      for (const char c : text)
+        {
+          depth += (c == '(') - (c == ')');
+          if (c == separator && depth == 0)
+            {
+              parts.push_back(Utilities::trim(part));
+              part.clear();
+            }
+          else
+            part += c;
+        }
+      // One separator too many at the end does no harm.
+      if (!Utilities::trim(part).empty())
+        parts.push_back(Utilities::trim(part));
+      return parts;
+    }
+
+
+
+    std::vector<std::pair<std::string, std::string>>
+    read_names(const std::string                   &path,
+               const std::map<std::string, double> &reserved,
+               Values                              &values)
+    {
+      std::vector<std::pair<std::string, std::string>> names;
+      for (const std::string &part : split(values.get(path), ';'))
+        {
+          const auto        equal = part.find('=');
+          const std::string name  = Utilities::trim(part.substr(0, equal));
+          const bool good_name    = !name.empty() && !std::isdigit(name[0]) &&
+            std::all_of(name.begin(), name.end(), [](const unsigned char c) {
+              return std::isalnum(c) || c == '_';
+            });
+          if (equal == part.npos || !good_name)
+            throw InputError(values.subject(path) + ": '" + part +
+                             "' is not of the form 'name = expression'; "
+                             "correct it.");
+          if (reserved.count(name) > 0)
+            throw InputError(values.subject(path) + ": '" + name +
+                             "' is given by the material and the contact "
+                             "parameters; choose another name.");
+          if (name == "x" || name == "y" || name == "z")
+            throw InputError(values.subject(path) + ": '" + name +
+                             "' is a coordinate; choose another name.");
+          names.emplace_back(name, Utilities::trim(part.substr(equal + 1)));
+        }
+      return names;
+    }
+
+
+
+    std::vector<ConditionText>
+    read_conditions(const std::string &path,
+                    const std::string &form,
+                    Values            &values)
+    {
+      std::vector<ConditionText> conditions;
+      for (const std::string &part : split(values.get(path), ';'))
+        {
+          const auto colon = part.find(':');
+          if (colon == part.npos || colon == 0)
+            throw InputError(values.subject(path) + ": '" + part +
+                             "' is not of the form '" + form +
+                             "'; correct it.");
+          conditions.push_back({Utilities::trim(part.substr(0, colon)),
+                                split(part.substr(colon + 1), ',')});
+        }
+      return conditions;
+    }
+
+
+
+    std::vector<double>
+    read_vector(const std::string &text,
+                const std::string &subject,
+                const Expressions &expressions)
+    {
+      std::vector<double> numbers;
+      for (const std::string &part : split(text, ','))
+        numbers.push_back(expressions.evaluate(part, subject));
+      return numbers;
+    }
+
+
+
+    // A number, or the word that leaves it to the estimated error.
+    void
+    read_inner_tolerance(Values &values, Parameters &parameters)
+    {
+      const std::string name   = "Solver/Inner tolerance";
+      const std::string text   = values.get(name);
+      SolverSettings   &solver = parameters.solver;
+      if (text != "discretisation")
+        {
+          if (!Patterns::Double(1e-300).match(text))
+            throw InputError(values.subject(name) + " is '" + text +
+                             "'; take a positive number, or 'discretisation'.");
+          solver.inner_tolerance = Utilities::string_to_double(text);
+          return;
+        }
+      if (solver.algorithm == Algorithm::fixed_point)
+        throw InputError(values.subject(name) +
+                         " is 'discretisation', which is for the algorithm "
+                         "'Gauss-Seidel like' only; take that or a number.");
+      if (!parameters.refinement.estimate_error)
+        throw InputError(values.subject(name) +
+                         " is 'discretisation', but errors are not estimated; "
+                         "set 'Refinement/Estimate error' or take a number.");
+      solver.stop_at_discretization = true;
+    }
+
+
+
+    // The less a material can be compressed, the worse sweeps and coarse
+    // corrections reduce displacements that hardly change volumes. Sweeps that
+    // follow each other through the cache are the cheapest remedy; see
+    // doc/benchmark/incompressible.txt. Three of them up to a Poisson ratio of
+    // 0.45, where the ratio of the two moduli is nine.
+    unsigned int
+    enough_sweeps(const Material &material)
+    {
+      const double ratio = material.lambda() / material.mu();
+      return std::lround(std::min(20., std::max(3., ratio / 3.)));
+    }
+  } // namespace
+
+
+
+  Expressions::Expressions(
+    const std::map<std::string, double>                    &constants,
+    const std::vector<std::pair<std::string, std::string>> &definitions)
+    : named_numbers(constants)
+  {
+    for (const auto &[name, expression] : definitions)
+      expanded_definitions[name] = expand(expression);
+  }
+
+
+
+  std::string
+  Expressions::expand(const std::string &expression) const
+  {
+    std::string expanded;
+    const auto  is_name = [](const unsigned char c) {
+      return std::isalnum(c) || c == '_' || c == '.';
+    };
+    for (std::size_t i = 0; i < expression.size();)
+      {
+        // A word starts with its first letter; 2e-3 is a number and no 'e'.
+        std::size_t end = i;
+        while (end < expression.size() && is_name(expression[end]))
+          ++end;
+        if (end == i)
+          {
+            expanded += expression[i++];
+            continue;
+          }
+        const std::string word       = expression.substr(i, end - i);
+        const auto        definition = expanded_definitions.find(word);
+        expanded += (definition == expanded_definitions.end()
+                       ? word
+                       : "(" + definition->second + ")");
+        i = end;
+      }
+    return expanded;
+  }
+
+
+
+  double
+  Expressions::evaluate(const std::string &expression,
+                        const std::string &where) const
+  {
+    // There is no coordinate to depend on: nobody writes this one.
+    const double value =
+      parse_function<1>({expression}, *this, where, "no_coordinate")
+        ->value(Point<1>());
+    if (!std::isfinite(value))
+      throw InputError(where + ": '" + expression +
+                       "' is not a finite number; correct it.");
+    return value;
+  }
+
+
+
+  Parameters
+  read_parameters(const std::string              &scene_file,
+                  const std::vector<std::string> &overrides)
+  {
+    Values values;
+    read_file(scene_file, values);
+    for (const std::string &override_text : overrides)
+      read_override(override_text, values);
+
+    Parameters parameters;
+
+    const auto        slash  = scene_file.find_last_of('/');
+    const std::string folder = scene_file.substr(0, slash + 1);
+    const std::string leaf   = scene_file.substr(slash + 1);
+    parameters.name          = leaf.substr(0, leaf.find_last_of('.'));
+    parameters.text          = values.text();
+
+    // The material and the coefficient of friction come first, since
+    // expressions may use them.
+    const double E  = values.number("Material/Young's modulus");
+    const double nu = values.number("Material/Poisson ratio");
+    const double F  = values.number("Contact/Friction coefficient");
+    if (!(E > 0.))
+      throw InputError(values.subject("Material/Young's modulus") + " is " +
+                       values.get("Material/Young's modulus") +
+                       ", but it must be positive.");
+    if (!(nu > -1. && nu < .5))
+      throw InputError(values.subject("Material/Poisson ratio") + " is " +
+                       values.get("Material/Poisson ratio") +
+                       ", but it must lie strictly between -1 and 1/2.");
+    if (!(F >= 0.))
+      throw InputError(values.subject("Contact/Friction coefficient") + " is " +
+                       values.get("Contact/Friction coefficient") +
+                       ", but it must not be negative.");
+    parameters.material =
+      Material(E,
+               nu,
+               values.get("Material/Volumetric strain") == "mean"
+                 ? VolumetricStrain::mean
+                 : VolumetricStrain::pointwise);
+
+    std::map<std::string, double> constants = {
+      {"E", E},
+      {"nu", nu},
+      {"lambda", parameters.material.lambda()},
+      {"mu", parameters.material.mu()},
+      {"F", F},
+      {"pi", numbers::PI}};
+    const std::map<std::string, double> reserved = constants;
+    for (const auto &[name, expression] :
+         read_names("Scene/Constants", reserved, values))
+      constants[name] =
+        Expressions(constants, {})
+          .evaluate(expression, values.subject("Scene/Constants"));
+    parameters.expressions =
+      Expressions(constants, read_names("Scene/Definitions", reserved, values));
+
+    const auto vector_of = [&](const std::string &path) {
+      return read_vector(
+        values.get(path), values.subject(path), parameters.expressions);
+    };
+    const auto vectors_of = [&](const std::string &path) {
+      std::vector<std::vector<double>> vectors;
+      for (const std::string &part : split(values.get(path), ';'))
+        vectors.push_back(
+          read_vector(part, values.subject(path), parameters.expressions));
+      return vectors;
+    };
+
+    {
+      const std::string geometry = values.get("Scene/Geometry");
+      auto             &scene    = parameters.scene;
+      scene.geometry =
+        (geometry == "half disc"         ? GeometryKind::half_disc
+           : geometry == "rectangle"     ? GeometryKind::rectangle
+           : geometry == "cylinder"      ? GeometryKind::cylinder
+           : geometry == "half cylinder" ? GeometryKind::half_cylinder
+           : geometry == "half ball"     ? GeometryKind::half_ball
+                                         : GeometryKind::mesh_file);
+      scene.size = vector_of("Scene/Size");
+      for (const double length : scene.size)
+        if (!(length > 0.))
+          throw InputError(values.subject("Scene/Size") + " is '" +
+                           values.get("Scene/Size") +
+                           "', but all lengths must be positive.");
+      for (const double n : vector_of("Scene/Subdivisions"))
+        {
+          if (!(n >= 1. && n <= 1e6 && n == std::floor(n)))
+            throw InputError(values.subject("Scene/Subdivisions") + " is '" +
+                             values.get("Scene/Subdivisions") +
+                             "', but it must consist of positive integers.");
+          scene.subdivisions.push_back(static_cast<unsigned int>(n));
+        }
+      scene.radius = values.number("Scene/Radius");
+      scene.length = values.number("Scene/Length");
+      scene.layers = values.integer("Scene/Layers");
+      scene.coarse_grid =
+        (values.get("Scene/Coarse grid") == "O-grid" ? CoarseGrid::o_grid
+                                                     : CoarseGrid::one_cell);
+      scene.mesh_file = values.get("Scene/Mesh file");
+      if (scene.geometry == GeometryKind::mesh_file)
+        {
+          if (scene.mesh_file.empty())
+            throw InputError(values.subject("Scene/Geometry") +
+                             " is 'mesh file', but none is given; set "
+                             "'Scene/Mesh file'.");
+          if (scene.mesh_file[0] != '/')
+            scene.mesh_file = folder + scene.mesh_file;
+        }
+      scene.distortion         = values.number("Scene/Distortion");
+      scene.rotation_angle     = values.number("Scene/Rotation angle");
+      scene.exact_displacement = values.get("Scene/Exact displacement");
+    }
+
+    {
+      const std::string kind     = values.get("Obstacle/Kind");
+      auto             &obstacle = parameters.obstacle;
+      obstacle.kind              = (kind == "none"      ? ObstacleKind::none
+                                      : kind == "plane" ? ObstacleKind::plane
+                                                        : ObstacleKind::rods);
+      obstacle.point             = vector_of("Obstacle/Point");
+      obstacle.normal            = vector_of("Obstacle/Normal");
+      obstacle.centers           = vectors_of("Obstacle/Centers");
+      obstacle.axes              = vectors_of("Obstacle/Axes");
+      obstacle.radius            = values.number("Obstacle/Radius");
+      if (!values.get("Obstacle/Length").empty())
+        {
+          obstacle.length = parameters.expressions.evaluate(
+            values.get("Obstacle/Length"), values.subject("Obstacle/Length"));
+          if (!(obstacle.length > 0.))
+            throw InputError(values.subject("Obstacle/Length") + " is '" +
+                             values.get("Obstacle/Length") +
+                             "', but it must be positive.");
+        }
+      if (obstacle.kind == ObstacleKind::rods && obstacle.centers.empty())
+        throw InputError(values.subject("Obstacle/Kind") +
+                         " is 'rods', but there are none; set "
+                         "'Obstacle/Centers'.");
+      const auto is_zero = [](const std::vector<double> &v) {
+        return std::all_of(
+          v.begin(), v.end(), [](const double c) { return c == 0.; });
+      };
+      if (!obstacle.normal.empty() && is_zero(obstacle.normal))
+        throw InputError(values.subject("Obstacle/Normal") +
+                         " is zero; give a direction.");
+      if (std::any_of(obstacle.axes.begin(), obstacle.axes.end(), is_zero))
+        throw InputError(values.subject("Obstacle/Axes") +
+                         " contains a zero vector; give directions.");
+    }
+
+    {
+      auto &conditions        = parameters.boundary_conditions;
+      conditions.displacement = read_conditions(
+        "Boundary conditions/Displacement", "id: u_x, u_y[, u_z]", values);
+      conditions.traction = read_conditions(
+        "Boundary conditions/Traction", "id: t_x, t_y[, t_z]", values);
+      conditions.pinned_points =
+        read_conditions("Boundary conditions/Pinned points",
+                        "(x, y[, z]): u_x, u_y[, u_z]",
+                        values);
+      conditions.body_force = values.get("Boundary conditions/Body force");
+    }
+
+    {
+      const std::string law     = values.get("Contact/Friction law");
+      auto             &contact = parameters.contact;
+      contact.boundary_id =
+        Utilities::string_to_int(values.get("Contact/Boundary id"));
+      contact.friction_law         = (law == "none"       ? FrictionLaw::none
+                                        : law == "Tresca" ? FrictionLaw::tresca
+                                                          : FrictionLaw::coulomb);
+      contact.friction_coefficient = F;
+      contact.friction_bound       = values.get("Contact/Friction bound");
+      contact.ignore_prescribed_penetration =
+        values.flag("Contact/Ignore prescribed penetration");
+      contact.normal = (values.get("Contact/Contact normal") == "body"
+                          ? ContactNormal::body
+                          : ContactNormal::obstacle);
+      if (contact.normal == ContactNormal::obstacle &&
+          parameters.obstacle.kind == ObstacleKind::none)
+        throw InputError(values.subject("Contact/Contact normal") +
+                         " is 'obstacle', but there is none; set "
+                         "'Obstacle/Kind', or take 'body'.");
+    }
+
+    {
+      auto &refinement    = parameters.refinement;
+      refinement.strategy = (values.get("Refinement/Strategy") == "uniform"
+                               ? RefinementStrategy::uniform
+                               : RefinementStrategy::adaptive);
+      refinement.initial_refinements =
+        values.integer("Refinement/Initial refinements");
+      refinement.levels         = values.integer("Refinement/Levels");
+      refinement.maximum_dofs   = values.integer("Refinement/Maximum dofs");
+      refinement.marking        = values.number("Refinement/Marking");
+      refinement.contact_zone   = values.flag("Refinement/Contact zone");
+      refinement.estimate_error = values.flag("Refinement/Estimate error");
+    }
+
+    {
+      const std::string truncation = values.get("Solver/Truncation");
+      SolverSettings   &solver     = parameters.solver;
+      solver.algorithm = (values.get("Solver/Algorithm") == "fixed point"
+                            ? Algorithm::fixed_point
+                            : Algorithm::gauss_seidel_like);
+      const std::string correction = values.get("Solver/Coarse correction");
+      solver.coarse_correction =
+        (correction == "truncated"    ? CoarseCorrection::truncated
+           : correction == "monotone" ? CoarseCorrection::monotone
+                                      : CoarseCorrection::algebraic);
+      solver.cycle = (values.get("Solver/Cycle") == "V" ? Cycle::V : Cycle::W);
+      solver.truncation = (truncation == "phases" ? TruncationVariant::phases
+                             : truncation == "contact"
+                             ? TruncationVariant::contact
+                             : TruncationVariant::phases_without_second_order);
+      const std::string coarsest = values.get("Solver/Coarsest solver");
+      solver.coarsest_method =
+        (coarsest == "automatic"  ? CoarsestMethod::automatic
+           : coarsest == "direct" ? CoarsestMethod::direct
+                                  : CoarsestMethod::algebraic_multigrid);
+      solver.local_solver =
+        (values.get("Solver/Local solver") == "secular equation"
+           ? LocalSolver::secular_equation
+           : LocalSolver::uzawa);
+      const unsigned int sweeps = enough_sweeps(parameters.material);
+      solver.smoothing_steps = values.steps("Solver/Smoothing steps", sweeps);
+      solver.coarse_smoothing_steps =
+        values.steps("Solver/Coarse smoothing steps", std::max(6u, sweeps));
+      read_inner_tolerance(values, parameters);
+      solver.outer_tolerance = values.number("Solver/Outer tolerance");
+      solver.certificate_tolerance =
+        values.number("Solver/Certificate tolerance");
+      solver.maximum_cycles = values.integer("Solver/Maximum cycles");
+      solver.maximum_outer_iterations =
+        values.integer("Solver/Maximum outer iterations");
+      solver.maximum_damping  = values.number("Solver/Maximum damping");
+      solver.recombined_steps = values.integer("Solver/Recombined steps");
+      solver.outer_damping    = values.number("Solver/Outer damping");
+      solver.mixed_outer_iterations =
+        values.integer("Solver/Mixed outer iterations");
+      solver.safeguards = values.flag("Solver/Safeguards");
+    }
+
+    {
+      const std::string verbosity = values.get("Output/Verbosity");
+      auto             &output    = parameters.output;
+      output.directory            = values.get("Output/Directory");
+      output.fields               = values.flag("Output/Fields");
+      output.format =
+        (values.get("Output/Format") == "vtu" ? FieldFormat::vtu
+                                              : FieldFormat::hdf5);
+      output.checkpoint = values.flag("Output/Checkpoint");
+      output.times      = values.flag("Output/Times");
+      output.profile    = values.flag("Output/Profile");
+      output.verbosity  = (verbosity == "quiet"      ? Verbosity::quiet
+                             : verbosity == "levels" ? Verbosity::levels
+                                                     : Verbosity::cycles);
+      if (output.directory.empty())
+        throw InputError(values.subject("Output/Directory") +
+                         " is empty; name a directory.");
+    }
+
+    return parameters;
+  }
+
+
+
+  std::string
+  first_difference(const std::string &text, const std::string &other)
+  {
+    std::array<ParameterHandler, 2> handlers;
+    declare_parameters(handlers[0]);
+    declare_parameters(handlers[1]);
+    handlers[0].parse_input_from_string(text);
+    handlers[1].parse_input_from_string(other);
+    const auto value = [&](const unsigned int i, const ParameterEntry &entry) {
+      handlers[i].enter_subsection(entry.section);
+      const std::string value = handlers[i].get(entry.name);
+      handlers[i].leave_subsection();
+      return value;
+    };
+
+    for (const ParameterEntry &entry : parameter_entries())
+      if (entry.section != "Solver" && entry.section != "Output" &&
+          entry.path() != "Refinement/Levels" &&
+          entry.path() != "Refinement/Maximum dofs" &&
+          entry.path() != "Refinement/Estimate error" &&
+          value(0, entry) != value(1, entry))
+        return entry.path();
+    return "";
+  }
+
+
+
+  void
+  print_default_parameters(std::ostream &out)
+  {
+    ParameterHandler prm;
+    declare_parameters(prm);
+    prm.print_parameters(
+      out, ParameterHandler::PRM | ParameterHandler::KeepDeclarationOrder);
+  }
+} // namespace Friction

@@ -1,0 +1,237 @@
+#ifndef friction_parameters_parameters_h
+#define friction_parameters_parameters_h
+
+#include <common/scene/input_error.h>
+#include <common/parameters/material.h>
+#include <common/parameters/solver_settings.h>
+
+#include <limits>
+#include <map>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * The names that the expressions of one scene may use besides the
+   * coordinates: constants with a number, and definitions, which are
+   * themselves expressions and are put in place of their names.
+   */
+  class Expressions
+  {
+  public:
+    Expressions() = default;
+
+    /**
+     * @param constants names and their numbers
+     * @param definitions names and the expressions they stand for, which may
+     *   use the constants and the definitions before them
+     */
+    Expressions(
+      const std::map<std::string, double>                    &constants,
+      const std::vector<std::pair<std::string, std::string>> &definitions);
+
+    /// The expression with every defined name replaced by what it stands for.
+    std::string expand(const std::string &expression) const;
+
+    /**
+     * The value of an expression that does not depend on the coordinates.
+     * Throws InputError when there is none; @p where says in that sentence
+     * which parameter is meant.
+     */
+    double evaluate(const std::string &expression,
+                    const std::string &where) const;
+
+    const std::map<std::string, double> &
+    constants() const
+    {
+      return named_numbers;
+    }
+
+  private:
+    std::map<std::string, double>      named_numbers;
+    std::map<std::string, std::string> expanded_definitions;
+  };
+
+
+
+  enum class GeometryKind
+  {
+    half_disc,     ///< lower half disc, centre at the origin, flat top y = 0
+    rectangle,     ///< [0, L] x [0, H] (x [0, W]), a block
+    cylinder,      ///< around the z axis, 0 <= z <= length
+    half_cylinder, ///< a half disc for each z, 0 <= z <= length
+    half_ball,     ///< lower half ball, centre at the origin, flat top z = 0
+    mesh_file      ///< a mesh in Gmsh's format
+  };
+
+  /**
+   * How a cylinder is cut into cells.
+   */
+  enum class CoarseGrid
+  {
+    o_grid,  ///< a core in a ring: good cells however fine
+    one_cell ///< a cell whose refinements degenerate at the round boundary
+  };
+
+  enum class ObstacleKind
+  {
+    none,  ///< nothing in the way
+    plane, ///< a half space
+    rods   ///< discs in two dimensions, circular rods in three
+  };
+
+  enum class ContactNormal
+  {
+    body,    ///< the outward normal of the body at the node
+    obstacle ///< from the node straight towards the obstacle
+  };
+
+  enum class RefinementStrategy
+  {
+    uniform,
+    adaptive
+  };
+
+  enum class Verbosity
+  {
+    quiet,  ///< nothing but warnings and errors
+    levels, ///< one row per level
+    cycles  ///< and progress inside the levels
+  };
+
+  enum class FieldFormat
+  {
+    vtu, ///< one file per process, with records that list them
+    hdf5 ///< one file for all, with a description in XDMF
+  };
+
+  /**
+   * One entry of a list of conditions as written in a scene file: a key
+   * (a boundary id, or a point), and one expression per component, where
+   * <tt>free</tt> says that nothing is prescribed for it.
+   */
+  struct ConditionText
+  {
+    std::string              key;
+    std::vector<std::string> components;
+  };
+
+  /**
+   * All that a scene file says, checked as far as that is possible without a
+   * mesh. Lengths, stresses etc. are in whatever consistent units the author of
+   * the scene uses; nothing in the program depends on them.
+   */
+  struct Parameters
+  {
+    struct Scene
+    {
+      GeometryKind              geometry = GeometryKind::rectangle;
+      std::vector<double>       size;         ///< of the rectangle; empty: ones
+      std::vector<unsigned int> subdivisions; ///< of the rectangle, likewise
+      double                    radius      = 1.; ///< of a round body
+      double                    length      = 2.; ///< of a cylinder
+      CoarseGrid                coarse_grid = CoarseGrid::o_grid;
+      unsigned int              layers      = 0; ///< along z; 0: as is suitable
+      std::string               mesh_file;       ///< path, ready to be opened
+      double                    distortion     = 0.; ///< fraction of a cell
+      double                    rotation_angle = 0.; ///< degrees, around z
+      std::string exact_displacement; ///< components, comma separated, or empty
+    };
+
+    struct Obstacle
+    {
+      ObstacleKind        kind = ObstacleKind::none;
+      std::vector<double> point;  ///< on the plane; empty: 0
+      std::vector<double> normal; ///< into the obstacle; empty: down
+      std::vector<std::vector<double>> centers;     ///< of the rods
+      std::vector<std::vector<double>> axes;        ///< of the rods, 3D only
+      double                           radius = 1.; ///< of the rods
+      double length = std::numeric_limits<double>::infinity(); ///< likewise
+    };
+
+    struct Contact
+    {
+      int           boundary_id          = -1; ///< -1: no contact boundary
+      FrictionLaw   friction_law         = FrictionLaw::coulomb;
+      double        friction_coefficient = 0.;
+      std::string   friction_bound; ///< Tresca: given stress, an expression
+      ContactNormal normal                        = ContactNormal::body;
+      bool          ignore_prescribed_penetration = false;
+    };
+
+    struct BoundaryConditions
+    {
+      std::vector<ConditionText> displacement;
+      std::vector<ConditionText> traction;
+      std::vector<ConditionText> pinned_points;
+      std::string                body_force; ///< comma separated, or empty
+    };
+
+    struct Refinement
+    {
+      RefinementStrategy strategy            = RefinementStrategy::uniform;
+      unsigned int       initial_refinements = 0;
+      unsigned int       levels              = 0; ///< refinements after that
+      unsigned int       maximum_dofs        = 0;
+      double             marking             = .5; ///< of the largest indicator
+      bool               contact_zone        = false;
+      bool               estimate_error      = true;
+    };
+
+    struct Output
+    {
+      std::string directory;
+      bool        fields     = true;
+      FieldFormat format     = FieldFormat::vtu;
+      bool        checkpoint = false; ///< one after each level
+      bool        times      = true;  ///< print what depends on the clock
+      bool        profile    = false; ///< print what the solver has cost
+      Verbosity   verbosity  = Verbosity::cycles;
+    };
+
+    std::string name; ///< stem of the scene file's name
+    std::string text; ///< all parameters in effect, in the file format
+
+    Scene              scene;
+    Material           material = Material(1., .3);
+    Obstacle           obstacle;
+    BoundaryConditions boundary_conditions;
+    Contact            contact;
+    Refinement         refinement;
+    SolverSettings     solver;
+    Output             output;
+
+    /// The constants and definitions that the expressions above may use.
+    Expressions expressions;
+  };
+
+  /**
+   * Read a scene file and let the overrides, each of the form
+   * <tt>Section/Entry=value</tt>, have the last word. Throws InputError.
+   */
+  Parameters read_parameters(const std::string              &scene_file,
+                             const std::vector<std::string> &overrides = {});
+
+  /**
+   * Compares the parameters of two runs, each given as in Parameters::text, one
+   * of which is to continue the other.
+   *
+   * @return the first entry that would make it another problem or another
+   *   sequence of meshes, as <tt>Section/Entry</tt>; empty if there is none.
+   * How far to go (number of levels, limit on unknowns), how to solve and what
+   * to write or print may differ.
+   */
+  std::string first_difference(const std::string &text,
+                               const std::string &other);
+
+  /**
+   * Print all entries with their defaults and documentation, in the format of
+   * a scene file.
+   */
+  void print_default_parameters(std::ostream &out);
+} // namespace Friction
+
+#endif

@@ -1,0 +1,130 @@
+#ifndef friction_parameters_solver_settings_h
+#define friction_parameters_solver_settings_h
+
+namespace Friction
+{
+  /**
+   * How normal and tangential contact forces are tied together.
+   */
+  enum class FrictionLaw
+  {
+    none,   ///< frictionless: nothing of friction is allocated or computed
+    tresca, ///< the normal forces in the friction bound are given
+    coulomb ///< the normal forces in the friction bound are those of the
+            ///< solution
+  };
+
+  /**
+   * How the normal forces of Coulomb's law are found.
+   */
+  enum class Algorithm
+  {
+    fixed_point,      ///< Algorithm 2: an outer iteration over Tresca problems
+    gauss_seidel_like ///< Algorithm 3: updated inside the leading relaxation
+  };
+
+  enum class CoarseCorrection
+  {
+    truncated, ///< unconstrained on truncated functions, then a line search
+    monotone,  ///< constrained by coarse obstacles, no line search needed
+    algebraic  ///< the truncated problem solved on the leaf mesh itself
+  };
+
+  enum class Cycle
+  {
+    V,
+    W
+  };
+
+  /**
+   * How the coarsest level is solved.
+   */
+  enum class CoarsestMethod
+  {
+    automatic,          ///< whichever is quicker for its number of unknowns
+    direct,             ///< by a sparse factorisation
+    algebraic_multigrid ///< by conjugate gradients with algebraic multigrid
+  };
+
+  enum class TruncationVariant
+  {
+    phases,                     ///< stick: all components; slip: the normal one
+    contact,                    ///< all components of every node in contact
+    phases_without_second_order ///< phases, but no second derivative of
+                                ///< friction
+  };
+
+  /**
+   * How the direction of slip is found in the local problems of three
+   * dimensions; in two there are but two directions to choose from.
+   */
+  enum class LocalSolver
+  {
+    secular_equation, ///< one scalar equation for the direction of slip
+    uzawa             ///< the thesis's iteration for the tangential force
+  };
+
+  /**
+   * Everything that can be chosen about the nonlinear solver. The defaults are
+   * those of the step programs' parameter files.
+   */
+  struct SolverSettings
+  {
+    Algorithm         algorithm         = Algorithm::gauss_seidel_like;
+    CoarseCorrection  coarse_correction = CoarseCorrection::truncated;
+    Cycle             cycle             = Cycle::V;
+    TruncationVariant truncation        = TruncationVariant::phases;
+    LocalSolver       local_solver      = LocalSolver::secular_equation;
+    CoarsestMethod    coarsest_method   = CoarsestMethod::automatic;
+
+    /// Relaxation sweeps on the leaf mesh before and after the coarse
+    /// correction.
+    unsigned int smoothing_steps = 3;
+
+    /// The same on the correction levels.
+    unsigned int coarse_smoothing_steps = 6;
+
+    /// Relative increment at which the multigrid iteration stops.
+    double inner_tolerance = 1e-9;
+
+    /// Whether to stop Algorithm 3 as soon as its error is small compared with
+    /// that of the discretisation; see DiscretizationStop, which then sets the
+    /// error at which to stop, an energy norm. Zero: by the inner tolerance.
+    bool   stop_at_discretization = false;
+    double energy_tolerance       = 0.;
+
+    /// Relative change of the normal forces at which Algorithm 2 stops.
+    double outer_tolerance = 2e-7;
+
+    /// Largest residual of the discrete law, relative to the largest nodal
+    /// force or gap, with which a solution is certified.
+    double certificate_tolerance = 1e-6;
+
+    unsigned int maximum_cycles           = 200;
+    unsigned int maximum_outer_iterations = 50;
+
+    /// Largest step length in the line search after a coarse correction.
+    double maximum_damping = 2.;
+
+    /// Number of previous steps that a truncated coarse correction is
+    /// recombined with; zero for none.
+    unsigned int recombined_steps = 1;
+
+    /// Damping of the normal forces in Algorithm 2; 1 is the plain fixed point.
+    double outer_damping = 1.;
+
+    /// Number of previous outer iterations that the normal forces of Algorithm
+    /// 2 are mixed with, see MixedFixedPoint; zero for none.
+    unsigned int mixed_outer_iterations = 0;
+
+    /// Whether to try other iterations where one is getting nowhere; see
+    /// SafeguardedSolver, which then sets the next entry.
+    bool safeguards = true;
+
+    /// Whether to end an iteration that would not come to its end within the
+    /// maximum number of cycles; see MultigridResult::stalls().
+    bool gives_up_early = false;
+  };
+} // namespace Friction
+
+#endif

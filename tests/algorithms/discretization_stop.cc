@@ -1,0 +1,101 @@
+// Stopping at the discretisation error: on each mesh but the first the
+// iteration ends early, and still its error, measured against a solution to
+// rounding, is at most a tenth of the error of the discretisation.
+
+#include <common/algorithms/discretization_stop.h>
+
+#include <iostream>
+
+#include <tests/support/check.h>
+
+#include "../support/nested_iteration.h"
+
+using namespace Tests;
+
+namespace
+{
+  template <int dim>
+  double
+  energy_norm(const NodeBlockMatrix<dim> &A, const VectorType &v)
+  {
+    VectorType Av(v);
+    A.vmult(Av.begin(), v.begin());
+    return std::sqrt(std::max(0., Av * v));
+  }
+
+
+
+  template <int dim>
+  void
+  test(const std::string &scene, const std::vector<std::string> &overrides)
+  {
+    std::cout << "Scene " << scene << std::endl;
+    NestedIteration<dim> nest(read_parameters(
+      (dim == 2 ? SCENES_DIR "/" : SCENES_3D_DIR "/") + scene + ".prm",
+      overrides));
+    SolverSettings       tight    = nest.parameters.solver;
+    tight.inner_tolerance         = 1e-12;
+    SolverSettings wanted         = nest.parameters.solver;
+    wanted.stop_at_discretization = true;
+    DiscretizationStop<dim> stop(wanted);
+
+    double       share = 0, extrapolation_low = 1e10, extrapolation_high = 0;
+    unsigned int n_cycles = 0, n_tight_cycles = 0;
+    bool         converged = true;
+    do
+      {
+        const Discretization<dim> &d      = *nest.discretization;
+        const auto                 n_dofs = d.dof_handler.n_dofs();
+        VectorType                 u;
+        ContactState               state(0, false);
+        n_tight_cycles += nest.solve_with(tight, u, state).cycles.size();
+
+        nest.report = nest.solve_with(
+          stop.settings_for(n_dofs), nest.displacement, nest.state);
+        converged = converged && nest.report.converged;
+        n_cycles += nest.report.cycles.size();
+        u -= nest.displacement;
+        const double error = energy_norm<dim>(d.matrix, u);
+        nest.accept();
+        const ErrorEstimate estimate = estimate_contact_error(nest.scene,
+                                                              d.mapping,
+                                                              d.dof_handler,
+                                                              d.hanging,
+                                                              *d.constraints,
+                                                              *d.contact,
+                                                              nest.displacement,
+                                                              nest.tractions);
+        stop.add_estimate(estimate.total, n_dofs);
+        share = std::max(share, error / estimate.total);
+        if (nest.level > 0)
+          {
+            const double ratio = nest.report.algebraic_error / error;
+            extrapolation_low  = std::min(extrapolation_low, ratio);
+            extrapolation_high = std::max(extrapolation_high, ratio);
+          }
+    } while (nest.refine());
+    check(converged, "all meshes are solved");
+    check_below(share, .1 / 8., "error of the iteration over estimated error");
+    check_below(extrapolation_high, 10., "the error is not overestimated much");
+    check_below(1. / extrapolation_low, 4., "and underestimated even less");
+    check_below(double(n_cycles) / n_tight_cycles,
+                .5,
+                "cycles over those to rounding, first mesh included");
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *argv[])
+{
+  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  test<2>("hertz", {"Refinement/Maximum dofs=5000"});
+  test<2>("block",
+          {"Refinement/Initial refinements=2",
+           "Refinement/Levels=3",
+           "Material/Poisson ratio=0.45",
+           "Contact/Friction coefficient=0.05"});
+  test<3>("cylinder",
+          {"Refinement/Initial refinements=1", "Refinement/Maximum dofs=2000"});
+}

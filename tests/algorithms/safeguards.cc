@@ -1,0 +1,213 @@
+// What happens when an iteration is getting nowhere. Part by part: stalling is
+// noticed, and slow progress is not taken for it; mixing finds the fixed point
+// of a map that throws everything away from it; algebraic corrections solve
+// what coarse levels do not help with; and the chain of all of them finds
+// solutions where the first attempt fails, says what it did, and says so if it
+// failed.
+
+#include <common/algorithms/mixed_fixed_point.h>
+#include <common/algorithms/safeguarded_solver.h>
+
+#include <iostream>
+
+#include <tests/support/check.h>
+
+#include "../support/nested_iteration.h"
+#include "../support/random_problem.h"
+
+using namespace Tests;
+
+namespace
+{
+  void
+  test_stalling()
+  {
+    std::cout << "Stalling" << std::endl;
+    const auto stalls_at = [](const auto &increment) {
+      MultigridResult result;
+      for (unsigned int cycle = 0; cycle < 200; ++cycle)
+        {
+          CycleInfo info = {};
+          info.increment = increment(cycle);
+          result.cycles.push_back(info);
+          if (info.increment <= 1e-9)
+            return 0u;
+          if (result.stalls(1e-9, 200))
+            return cycle + 1;
+        }
+      return 200u;
+    };
+    check(stalls_at([](const unsigned int) { return 1e-3; }) == 50,
+          "constant increments are given up after 50 cycles");
+    check(stalls_at([](const unsigned int c) { return c % 2 ? 1e-2 : 1e-3; }) ==
+            50,
+          "so are increments that go to and fro");
+    check(stalls_at([](const unsigned int c) { return std::pow(.89, c); }) == 0,
+          "a contraction of 0.89 per cycle is not");
+    check(stalls_at([](const unsigned int c) { return std::pow(.95, c); }) ==
+            50,
+          "one of 0.95 is, as it would take 400 cycles");
+    check(stalls_at([](const unsigned int c) {
+            return c < 40 ? 1e-2 : 1e-2 * std::pow(.5, c - 40.);
+          }) == 0,
+          "forty cycles to find the contact zone are granted");
+  }
+
+
+
+  // tau -> M tau + b with eigenvalues 3, -5 and 0.5.
+  void
+  test_mixing()
+  {
+    std::cout << "Mixing" << std::endl;
+    Eigen::Matrix3d V;
+    V << 1, 2, 0, 0, 1, 1, 1, 0, 1;
+    const Eigen::Matrix3d M =
+      V * Eigen::Vector3d(3, -5, .5).asDiagonal() * V.inverse();
+    const Eigen::Vector3d solution(1, 2, 3);
+    const auto            iterate = [&](const unsigned int depth) {
+      MixedFixedPoint     fixed_point(depth, .5, MPI_COMM_WORLD);
+      std::vector<double> tau = {1.1, 1.9, 3.2};
+      for (unsigned int i = 0; i < 8; ++i)
+        {
+          const Eigen::Vector3d found =
+            solution + M * (Eigen::Vector3d(tau.data()) - solution);
+          tau = fixed_point.next(tau, {found(0), found(1), found(2)});
+        }
+      return (Eigen::Vector3d(tau.data()) - solution).norm();
+    };
+    check(iterate(0) > 10., "the damped iteration leaves the fixed point");
+    check_below(iterate(3), 1e-8, "mixed from three steps it is found");
+  }
+
+
+
+  SolverReport
+  solve(const Parameters &parameters, VectorType &u, ContactState &state)
+  {
+    const Scene<2> scene(parameters);
+    const auto     mesh = make_triangulation<2>();
+    scene.make_coarse_mesh(*mesh);
+    mesh->refine_global(parameters.refinement.initial_refinements);
+    const Discretization<2> d(scene, *mesh);
+    u     = d.admissible_start();
+    state = ContactState(d.contact->size(), d.problem().has_friction());
+    SafeguardedSolver<2> solver(*d.hierarchy, d.problem(), parameters.solver);
+    return solver.solve(u, state);
+  }
+
+
+
+  double
+  distance(const VectorType &a, const VectorType &b)
+  {
+    VectorType difference(a);
+    difference -= b;
+    return difference.linfty_norm() / b.linfty_norm();
+  }
+
+
+
+  // Cells a hundred times longer than wide.
+  void
+  test_long_cells(const FrictionLaw law)
+  {
+    std::cout << "Long cells, " << (law == FrictionLaw::none ? "no " : "")
+              << "friction" << std::endl;
+    Parameters p                     = block_parameters<2>(law, .4);
+    p.scene.size                     = {100., 1.};
+    p.scene.subdivisions             = {1, 1};
+    p.scene.distortion               = 0.;
+    p.solver.maximum_cycles          = 60;
+    p.refinement.initial_refinements = 5;
+    VectorType         u, v;
+    ContactState       state(0, false), other(0, false);
+    const SolverReport report = solve(p, u, state);
+    check(report.converged, "it is solved");
+    std::cout << report.attempts.size() << " attempts, the last one: "
+              << (report.attempts.empty() ? "" : report.attempts.back().name)
+              << std::endl;
+    check(report.cycles.size() <= 80, "and soon");
+
+    // The same by patience.
+    p.solver.safeguards       = false;
+    p.solver.maximum_cycles   = 5000;
+    p.solver.recombined_steps = 20;
+    check(solve(p, v, other).converged, "so it is by patience");
+    check_below(distance(u, v), 1e-6, "displacements agree");
+  }
+
+
+
+  // Much friction, for which the iteration goes to and fro.
+  void
+  test_much_friction()
+  {
+    std::cout << "Much friction" << std::endl;
+    NestedIteration<2>       nest(read_parameters(
+      SCENES_DIR "/raous.prm", {"Contact/Friction coefficient=10"}));
+    const Discretization<2> *d        = nest.discretization.get();
+    unsigned int             failures = 0, solved = 0;
+    std::string              last;
+    do
+      {
+        d = nest.discretization.get();
+        VectorType     u;
+        ContactState   state    = nest.make_guess(u);
+        SolverSettings settings = nest.parameters.solver;
+        settings.safeguards     = false;
+        CoulombSolver<2> plain(*d->hierarchy, d->problem(), settings);
+        failures += !plain.solve(u, state).converged;
+
+        nest.displacement   = nest.guess;
+        nest.state          = nest.make_guess(nest.displacement);
+        settings.safeguards = true;
+        SafeguardedSolver<2> safe(*d->hierarchy, d->problem(), settings);
+        nest.report = safe.solve(nest.displacement, nest.state);
+        solved += nest.report.converged;
+        if (!nest.report.attempts.empty())
+          last = nest.report.attempts.back().name;
+        nest.accept();
+    } while (nest.refine());
+    check(failures > 0, "without safeguards there are meshes without solution");
+    check(solved == nest.parameters.refinement.levels + 1,
+          "with them there is one on all meshes");
+    std::cout << "found by " << last << std::endl;
+  }
+
+
+
+  // Nobody satisfies the laws to the last digit. If that is what is asked for,
+  // everything is tried, and what is said in the end is that it was not enough.
+  void
+  test_failure()
+  {
+    std::cout << "Failure" << std::endl;
+    Parameters p = block_parameters<2>(FrictionLaw::coulomb, .4);
+    p.solver.certificate_tolerance   = 1e-30;
+    p.refinement.initial_refinements = 3;
+    VectorType         u;
+    ContactState       state(0, false);
+    const SolverReport report = solve(p, u, state);
+    check(!report.converged, "it is not solved");
+    for (const SolverAttempt &attempt : report.attempts)
+      std::cout << attempt.name << std::endl;
+    check_below(report.certificate.largest(), 1e-8, "almost it is");
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *argv[])
+{
+  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
+    std::cout.setstate(std::ios::failbit);
+  test_stalling();
+  test_mixing();
+  test_long_cells(FrictionLaw::coulomb);
+  test_long_cells(FrictionLaw::none);
+  test_much_friction();
+  test_failure();
+}

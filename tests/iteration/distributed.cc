@@ -1,0 +1,623 @@
+// Several processes compute what one computes. Each process also solves the
+// whole problem on its own, on the same mesh, with hanging nodes on the contact
+// boundary, and the two are compared vertex by vertex:
+//
+// - contact nodes with normals, gaps and measures, and the rows of the
+// stiffness
+//   matrix;
+// - the matrices of all levels, with random projectors and second derivatives
+// at
+//   contact nodes, after a fresh assembly and after updates; updates must agree
+//   with fresh assemblies to the last bit on several processes, too;
+// - the solution, with the same phases, certificate and energy.
+//
+// Sweeps and cycles are not the same, since each process relaxes its own nodes
+// while the others relax theirs. What they have to be instead: a cycle is
+// symmetric and positive, a sweep keeps the iterate admissible and does not
+// raise the energy for given normal forces, neither that of several processes
+// nor that evaluated by one alone.
+
+#include <common/iteration/coarse_cycle.h>
+#include <common/nodes/interface_damping.h>
+#include <common/levels/level_matrices.h>
+#include <common/iteration/monotone_smoother.h>
+#include <common/parallel/phase_costs.h>
+#include <common/parallel/reductions.h>
+#include <common/algorithms/coulomb_solver.h>
+
+#include <iostream>
+#include <map>
+
+#include <tests/support/check.h>
+#include <tests/support/random_problem.h>
+
+using namespace Tests;
+
+namespace
+{
+  template <int dim>
+  using Key = std::array<long, dim>;
+
+  template <int dim>
+  Key<dim>
+  key_of(const Point<dim> &point)
+  {
+    Key<dim> key;
+    for (unsigned int d = 0; d < dim; ++d)
+      key[d] = std::lround(point[d] * 1e8);
+    return key;
+  }
+
+
+
+  // Random numbers that belong to a point, not to an order.
+  template <int dim>
+  Random
+  random_at(const Point<dim> &point, const unsigned int salt)
+  {
+    unsigned int seed = salt;
+    for (const long k : key_of(point))
+      seed = seed * 1000003u + static_cast<unsigned int>(k);
+    return Random(seed);
+  }
+
+
+
+  // A problem on a communicator; its mesh depends on the seed only.
+  template <int dim>
+  struct Problem
+  {
+    Problem(const Parameters  &parameters,
+            const MPI_Comm     communicator,
+            const unsigned int seed)
+      : scene(parameters)
+      , mesh(make_triangulation<dim>(communicator))
+    {
+      scene.make_coarse_mesh(*mesh);
+      for (unsigned int round = 0; round < (dim == 2 ? 4 : 2); ++round)
+        {
+          for (const auto &cell : mesh->active_cell_iterators())
+            if (cell->is_locally_owned())
+              {
+                const bool at_bottom =
+                  cell->center()[dim - 1] < .6 * cell->diameter();
+                if (random_at(cell->center(), seed)
+                      .chance(at_bottom ? .6 : (dim == 2 ? .3 : .4)))
+                  cell->set_refine_flag();
+              }
+          mesh->execute_coarsening_and_refinement();
+        }
+      discretization = std::make_unique<Discretization<dim>>(scene, *mesh);
+
+      // Where nodes are: on the leaf mesh those that are known, on the levels
+      // all there are.
+      const auto &d = *discretization;
+      points.resize(d.constraints->n_nodes());
+      for (const auto &cell : d.dof_handler.active_cell_iterators())
+        if (!cell->is_artificial())
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              const unsigned int node =
+                d.constraints->node_of_dof(cell->vertex_dof_index(v, 0));
+              points[node] = cell->vertex(v);
+            }
+      for (unsigned int node = 0; node < d.constraints->n_owned_nodes(); ++node)
+        leaf_nodes[key_of(points[node])] = node;
+      for (unsigned int k = 0; k < mesh->n_global_levels(); ++k)
+        {
+          std::vector<double> here;
+          for (const auto &cell : d.dof_handler.mg_cell_iterators_on_level(k))
+            if (cell->is_locally_owned_on_level())
+              for (const unsigned int v : cell->vertex_indices())
+                {
+                  here.push_back(cell->mg_vertex_dof_index(k, v, 0) / dim);
+                  for (unsigned int c = 0; c < dim; ++c)
+                    here.push_back(cell->vertex(v)[c]);
+                }
+          level_points.emplace_back(d.dof_handler.n_dofs(k) / dim);
+          for (const auto &list :
+               Utilities::MPI::all_gather(communicator, here))
+            for (auto entry = list.begin(); entry != list.end();)
+              {
+                Point<dim> &point =
+                  level_points[k][static_cast<std::size_t>(*entry++)];
+                for (unsigned int c = 0; c < dim; ++c)
+                  point[c] = *entry++;
+              }
+          level_nodes.emplace_back();
+          for (unsigned int node = 0; node < level_points[k].size(); ++node)
+            level_nodes[k][key_of(level_points[k][node])] = node;
+        }
+    }
+
+    // Projectors and second derivatives at contact nodes, ghosts included.
+    Truncation<dim>
+    truncation(const unsigned int seed, const double scale) const
+    {
+      Truncation<dim>   result(*discretization->constraints);
+      const auto       &constraints = *discretization->constraints;
+      std::vector<char> is_contact(constraints.n_nodes(), 0);
+      VectorType        flags(constraints.partitioner());
+      for (const ContactNode<dim> &p : *discretization->contact)
+        if (p.n_free_tangents == dim - 1)
+          flags.local_element(dim * p.node) = 1.;
+      VectorType where(constraints.partitioner());
+      for (unsigned int node = 0; node < constraints.n_owned_nodes(); ++node)
+        for (unsigned int d = 0; d < dim; ++d)
+          where.local_element(dim * node + d) = points[node][d];
+      flags.update_ghost_values();
+      where.update_ghost_values();
+      for (unsigned int node = 0; node < constraints.n_nodes(); ++node)
+        if (flags.local_element(dim * node) > 0)
+          {
+            Point<dim> point;
+            for (unsigned int d = 0; d < dim; ++d)
+              point[d] = where.local_element(dim * node + d);
+            Random random = random_at(point, seed);
+            truncate_at_random<dim>(
+              result, node, random.below(dim + 1), scale, random);
+          }
+      return result;
+    }
+
+    const Scene<dim>                                           scene;
+    std::unique_ptr<parallel::distributed::Triangulation<dim>> mesh;
+    std::unique_ptr<Discretization<dim>>                       discretization;
+    std::vector<Point<dim>>                                    points;
+    std::map<Key<dim>, unsigned int>                           leaf_nodes;
+    std::vector<std::vector<Point<dim>>>                       level_points;
+    std::vector<std::map<Key<dim>, unsigned int>>              level_nodes;
+  };
+
+
+
+  void
+  report(const double value, const double bound, const std::string &what)
+  {
+    const double largest = max_over_processes(value, MPI_COMM_WORLD);
+    if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+      check_below(largest, bound, what);
+  }
+
+
+
+  template <int dim>
+  void
+  compare_discretizations(const Problem<dim> &all, const Problem<dim> &alone)
+  {
+    const auto &d = *all.discretization, &e = *alone.discretization;
+    const auto &constraints = *d.constraints;
+
+    const double n_contact =
+      sum_over_processes(d.contact->size(), MPI_COMM_WORLD);
+    report(std::abs(n_contact - e.contact->size()),
+           0.,
+           "the contact nodes are those of one process");
+    std::map<Key<dim>, const ContactNode<dim> *> nodes;
+    for (const ContactNode<dim> &p : *e.contact)
+      nodes[key_of(p.point)] = &p;
+    double difference = 0;
+    for (const ContactNode<dim> &p : *d.contact)
+      {
+        const ContactNode<dim> &q = *nodes.at(key_of(p.point));
+        difference                = std::max({difference,
+                                              std::abs(p.gap - q.gap),
+                                              std::abs(p.measure - q.measure) / q.measure,
+                                              (p.normal() - q.normal()).norm()});
+      }
+    report(difference, 1e-13, "so are their normals, gaps and measures");
+
+    // Ghost columns may be nodes of cells that are not known here; their
+    // owners know where they are.
+    VectorType where(constraints.partitioner());
+    for (unsigned int node = 0; node < constraints.n_owned_nodes(); ++node)
+      for (unsigned int c = 0; c < dim; ++c)
+        where.local_element(dim * node + c) = all.points[node][c];
+    where.update_ghost_values();
+    difference     = 0;
+    double missing = 0;
+    for (unsigned int i = 0; i < d.matrix.n_rows(); ++i)
+      {
+        const unsigned int row = alone.leaf_nodes.at(key_of(all.points[i]));
+        missing += std::abs(
+          static_cast<double>(d.matrix.row_end(i) - d.matrix.row_begin(i)) -
+          (e.matrix.row_end(row) - e.matrix.row_begin(row)));
+        for (std::size_t k = d.matrix.row_begin(i); k < d.matrix.row_end(i);
+             ++k)
+          {
+            const unsigned int j = d.matrix.column(k);
+            Point<dim>         point;
+            for (unsigned int c = 0; c < dim; ++c)
+              point[c] = where.local_element(dim * j + c);
+            const std::size_t l =
+              e.matrix.find(row, alone.leaf_nodes.at(key_of(point)));
+            if (l == e.matrix.row_end(row))
+              ++missing;
+            else
+              for (unsigned int b = 0; b < dim * dim; ++b)
+                difference = std::max(
+                  difference,
+                  std::abs(d.matrix.block(k)[b] - e.matrix.block(l)[b]));
+          }
+      }
+    report(missing, 0., "rows of the stiffness matrix have the same pattern");
+    report(difference, 1e-13, "and the same values");
+  }
+
+
+
+  template <int dim>
+  double
+  largest_difference(const LevelMatrices<dim> &all_matrices,
+                     const Problem<dim>       &all,
+                     const LevelMatrices<dim> &alone_matrices,
+                     const Problem<dim>       &alone)
+  {
+    double difference = 0;
+    for (unsigned int k = 0; k < all_matrices.n_levels(); ++k)
+      {
+        const auto &numbering =
+          all.discretization->hierarchy->level(k).numbering();
+        const auto &A = all_matrices.matrix(k), &B = alone_matrices.matrix(k);
+        double      scale = 0;
+        for (unsigned int i = 0; i < B.n_rows(); ++i)
+          if (B.row_begin(i) < B.row_end(i))
+            scale = std::max(scale, trace<dim>(B.block(B.row_begin(i))));
+        const auto other = [&](const unsigned int node) {
+          return alone.level_nodes[k].at(
+            key_of(all.level_points[k][numbering.global(node)]));
+        };
+        for (unsigned int i = 0; i < A.n_rows(); ++i)
+          {
+            const unsigned int row = other(i);
+            if (A.row_end(i) - A.row_begin(i) !=
+                B.row_end(row) - B.row_begin(row))
+              return 1.;
+            for (std::size_t e = A.row_begin(i); e < A.row_end(i); ++e)
+              {
+                const std::size_t f = B.find(row, other(A.column(e)));
+                if (f == B.row_end(row))
+                  return 1.;
+                for (unsigned int b = 0; b < dim * dim; ++b)
+                  difference =
+                    std::max(difference,
+                             std::abs(A.block(e)[b] - B.block(f)[b]) / scale);
+              }
+          }
+      }
+    return difference;
+  }
+
+
+
+  template <int dim>
+  void
+  compare_level_matrices(const Problem<dim> &all,
+                         const Problem<dim> &alone,
+                         const unsigned int  seed)
+  {
+    const auto        &d = *all.discretization, &e = *alone.discretization;
+    LevelMatrices<dim> matrices(d.matrix, *d.hierarchy, *d.constraints),
+      alone_matrices(e.matrix, *e.hierarchy, *e.constraints);
+    report(largest_difference(matrices, all, alone_matrices, alone),
+           1e-13,
+           "level matrices are those of one process");
+
+    double difference = 0, from_fresh = 0;
+    for (unsigned int step = 0; step < 3; ++step)
+      {
+        const Truncation<dim> truncation =
+          all.truncation(seed + step, step == 0 ? 0. : 1.);
+        matrices.update(truncation);
+        alone_matrices.update(
+          alone.truncation(seed + step, step == 0 ? 0. : 1.));
+        difference = std::max(
+          difference, largest_difference(matrices, all, alone_matrices, alone));
+
+        LevelMatrices<dim> fresh(d.matrix, *d.hierarchy, *d.constraints);
+        fresh.update(truncation);
+        for (unsigned int k = 0; k < matrices.n_levels(); ++k)
+          for (std::size_t p = 0; p < matrices.matrix(k).n_blocks(); ++p)
+            for (unsigned int b = 0; b < dim * dim; ++b)
+              from_fresh = std::max(from_fresh,
+                                    std::abs(matrices.matrix(k).block(p)[b] -
+                                             fresh.matrix(k).block(p)[b]));
+      }
+    report(difference, 1e-13, "also after updates with random truncations");
+    report(from_fresh, 0., "which are fresh assemblies to the last bit");
+  }
+
+
+
+  template <int dim>
+  void
+  check_cycle(const Problem<dim> &all, const unsigned int seed)
+  {
+    const auto      &d = *all.discretization;
+    CoarseCycle<dim> cycle(d.matrix, *d.hierarchy, *d.constraints, Cycle::V, 2);
+    const Truncation<dim> truncation = all.truncation(seed, 1.);
+    cycle.update(truncation);
+
+    const auto random_residual = [&](const unsigned int salt) {
+      VectorType r(d.constraints->partitioner());
+      for (unsigned int i = 0; i < d.constraints->n_owned_nodes(); ++i)
+        if (!d.constraints->is_hanging(i))
+          {
+            Random random = random_at(all.points[i], salt);
+            for (unsigned int c = 0; c < dim; ++c)
+              r.local_element(dim * i + c) = random(-1., 1.);
+          }
+      truncation.apply(r.begin());
+      return r;
+    };
+    const VectorType r = random_residual(1), s = random_residual(2);
+    VectorType       Cr(r), Cs(s);
+    cycle.apply(Cr, r);
+    cycle.apply(Cs, s);
+    report(std::abs(Cr * s - r * Cs) / std::sqrt((Cr * r) * (Cs * s)),
+           1e-13,
+           "a coarse cycle is symmetric");
+    report(Cr * r > 0 && Cs * s > 0 ? 0. : 1., 0., "and positive");
+  }
+
+
+
+  // Sweeps from a random admissible start, forwards and backwards, with random
+  // normal forces that are kept.
+  template <int dim>
+  void
+  check_sweeps(const Problem<dim> &all,
+               const Problem<dim> &alone,
+               const unsigned int  seed)
+  {
+    const auto &d = *all.discretization, &e = *alone.discretization;
+    const TrescaFunctional<dim> functional(d.problem()),
+      alone_functional(e.problem());
+    MonotoneSmoother<dim> smoother(
+      d.matrix, *d.constraints, *d.contact, d.friction_coefficient);
+
+    VectorType u = d.admissible_start();
+    for (unsigned int i = 0; i < d.constraints->n_owned_nodes(); ++i)
+      {
+        Random random = random_at(all.points[i], seed);
+        for (unsigned int c = 0; c < dim; ++c)
+          if (!d.constraints->is_prescribed(i, c) &&
+              !d.constraints->is_hanging(i))
+            u.local_element(dim * i + c) = random(-.01, .01);
+      }
+    ContactState state(d.contact->size(), true),
+      alone_state(e.contact->size(), true);
+    const auto bound_at = [&](const ContactNode<dim> &p) {
+      Random random = random_at(p.point, seed + 1);
+      return random.chance(.2) ? 0. : random(0., .01);
+    };
+    for (unsigned int p = 0; p < d.contact->size(); ++p)
+      {
+        const ContactNode<dim> &node   = (*d.contact)[p];
+        const double            excess = normal_component(node, u) - node.gap;
+        if (excess > 0)
+          for (unsigned int c = 0; c < dim; ++c)
+            u.local_element(dim * node.node + c) -= excess * node.normal()[c];
+        state.set_normal_force(p, bound_at(node));
+      }
+    for (unsigned int p = 0; p < e.contact->size(); ++p)
+      alone_state.set_normal_force(p, bound_at((*e.contact)[p]));
+
+    // The displacement as one process knows it.
+    const auto gathered = [&]() {
+      std::vector<double> here;
+      for (unsigned int i = 0; i < d.constraints->n_owned_nodes(); ++i)
+        {
+          for (unsigned int c = 0; c < dim; ++c)
+            here.push_back(all.points[i][c]);
+          for (unsigned int c = 0; c < dim; ++c)
+            here.push_back(u.local_element(dim * i + c));
+        }
+      VectorType result(e.constraints->partitioner());
+      for (const auto &list : Utilities::MPI::all_gather(MPI_COMM_WORLD, here))
+        for (std::size_t k = 0; k < list.size(); k += 2 * dim)
+          {
+            Point<dim> point;
+            for (unsigned int c = 0; c < dim; ++c)
+              point[c] = list[k + c];
+            const unsigned int node = alone.leaf_nodes.at(key_of(point));
+            for (unsigned int c = 0; c < dim; ++c)
+              result.local_element(dim * node + c) = list[k + dim + c];
+          }
+      return result;
+    };
+
+    // With many processes there must be nodes that need damping, or nothing is
+    // tested.
+    double n_damped = 0;
+    for (unsigned int i = 0; i < d.matrix.n_rows(); ++i)
+      n_damped += interface_damping(d.matrix, i) != zero_block<dim>();
+    n_damped = sum_over_processes(n_damped, MPI_COMM_WORLD);
+    if (dim == 3)
+      report(Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) >= 4 &&
+                 n_damped == 0
+               ? 1.
+               : 0.,
+             0.,
+             "there are nodes that are damped, if there are many processes");
+
+    smoother.ghosts().update(u.begin(), dim);
+    double energy = functional.energy(u, state), rise = 0, disagreement = 0,
+           penetration = functional.largest_penetration(u), fall = 0;
+    for (unsigned int step = 0; step < 20; ++step)
+      {
+        smoother.sweep(u, d.forces, state, false, step % 2 == 1);
+        const double next = functional.energy(u, state);
+        disagreement      = std::max(
+          disagreement,
+          std::abs(next - alone_functional.energy(gathered(), alone_state)));
+        rise        = std::max(rise, (next - energy) / std::abs(next));
+        fall        = std::max(fall, energy - next);
+        penetration = std::max(penetration, functional.largest_penetration(u));
+        energy      = next;
+      }
+    report(rise, 1e-14, "no sweep raises the energy");
+    report(fall > 0 ? 0. : 1., 0., "and the first ones lower it");
+    report(disagreement / std::abs(energy),
+           1e-12,
+           "energies are those that one process finds");
+    report(penetration, 1e-15, "iterates are admissible");
+
+    // Several sweeps in a row are the same as one after the other, with one
+    // exchange each, and so as many messages as there are in an exchange.
+    VectorType   v(u);
+    ContactState w(state);
+    const auto   n_messages = []() {
+      std::size_t sum = 0;
+      for (const PhaseCost &cost : phase_costs())
+        sum += cost.messages;
+      return sum;
+    };
+    const std::size_t before = n_messages();
+    smoother.ghosts().update(v.begin(), dim);
+    const std::size_t in_an_exchange = n_messages() - before;
+    typename MonotoneSmoother<dim>::Sweeps what;
+    what.n = 3;
+    smoother.sweeps(v, d.forces, w, what);
+    report(n_messages() - before == 4 * in_an_exchange ? 0. : 1.,
+           0.,
+           "there is one exchange of ghosts per sweep");
+    for (unsigned int step = 0; step < 3; ++step)
+      smoother.sweep(u, d.forces, state, false, false);
+    double difference = 0;
+    for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+      difference =
+        std::max(difference, std::abs(u.local_element(i) - v.local_element(i)));
+    report(difference, 0., "three sweeps in a row are three sweeps");
+  }
+
+
+
+  // The whole iteration with given normal forces, corrections included.
+  template <int dim>
+  void
+  check_monotonicity(const Problem<dim> &all, const unsigned int seed)
+  {
+    const auto                &d       = *all.discretization;
+    const DiscreteProblem<dim> problem = {d.matrix,
+                                          d.forces,
+                                          *d.constraints,
+                                          *d.contact,
+                                          FrictionLaw::tresca,
+                                          d.friction_coefficient};
+    for (const auto correction :
+         {CoarseCorrection::truncated, CoarseCorrection::monotone})
+      {
+        SolverSettings settings;
+        settings.coarse_correction = correction;
+        CoulombSolver<dim> solver(*d.hierarchy, problem, settings);
+        VectorType         u = d.admissible_start();
+        ContactState       state(d.contact->size(), true);
+        for (unsigned int p = 0; p < d.contact->size(); ++p)
+          {
+            Random random = random_at((*d.contact)[p].point, seed + 1);
+            state.set_normal_force(p, random(0., .01));
+          }
+        const SolverReport result = solver.solve(u, state);
+        double             rise   = 0;
+        for (unsigned int i = 1; i < result.cycles.size(); ++i)
+          rise = std::max(
+            rise, result.cycles[i].energy - result.cycles[i - 1].energy);
+        const std::string name =
+          correction == CoarseCorrection::truncated ? "truncated" : "monotone";
+        report(rise / std::abs(result.energy),
+               1e-13,
+               "with given friction no cycle raises the energy, " + name);
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  check_solution(const Problem<dim> &all, const Problem<dim> &alone)
+  {
+    const auto &d = *all.discretization, &e = *alone.discretization;
+    for (const auto correction :
+         {CoarseCorrection::truncated, CoarseCorrection::monotone})
+      {
+        SolverSettings settings;
+        settings.coarse_correction = correction;
+        if (correction == CoarseCorrection::monotone)
+          settings.cycle = Cycle::W;
+        const auto solve = [&](const Discretization<dim> &disc,
+                               ContactState              &state) {
+          CoulombSolver<dim> solver(*disc.hierarchy, disc.problem(), settings);
+          VectorType         u = disc.admissible_start();
+          return solver.solve(u, state);
+        };
+        ContactState state(d.contact->size(), true),
+          alone_state(e.contact->size(), true);
+        const SolverReport found    = solve(d, state);
+        const SolverReport expected = solve(e, alone_state);
+        const std::string  name     = correction == CoarseCorrection::truncated
+               ? "V truncated: "
+               : "W monotone: ";
+        report(found.converged && expected.converged ? 0. : 1.,
+               0.,
+               name + "converged with a certificate");
+        report(std::abs(found.energy - expected.energy) /
+                 std::abs(expected.energy),
+               1e-10,
+               name + "the energy is that of one process");
+        std::map<Key<dim>, unsigned int> number;
+        for (unsigned int p = 0; p < e.contact->size(); ++p)
+          number[key_of((*e.contact)[p].point)] = p;
+        double n_different = 0;
+        for (unsigned int p = 0; p < d.contact->size(); ++p)
+          {
+            const unsigned int q = number.at(key_of((*d.contact)[p].point));
+            n_different += state.in_contact(p) != alone_state.in_contact(q) ||
+              (state.in_contact(p) && state.sticks(p) != alone_state.sticks(q));
+          }
+        report(n_different, 0., name + "so are all phases");
+        report(std::max(0.,
+                        static_cast<double>(found.cycles.size()) -
+                          static_cast<double>(expected.cycles.size())),
+               2.,
+               name + "at most two cycles more");
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  test(const Parameters &parameters, const unsigned int seed)
+  {
+    const Problem<dim> alone(parameters, MPI_COMM_SELF, seed);
+    const Problem<dim> all(parameters, MPI_COMM_WORLD, seed);
+    if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+      {
+        unsigned int n_hanging = 0;
+        const auto  &e         = *alone.discretization;
+        for (unsigned int i = 0; i < e.constraints->n_nodes(); ++i)
+          n_hanging += e.constraints->is_hanging(i);
+        std::cout << dim << "D, " << e.hierarchy->n_levels() << " levels, "
+                  << e.constraints->n_nodes() << " nodes, " << n_hanging
+                  << " hang, " << e.contact->size() << " may touch"
+                  << std::endl;
+      }
+    compare_discretizations(all, alone);
+    compare_level_matrices(all, alone, seed);
+    check_cycle(all, seed);
+    check_sweeps(all, alone, seed);
+    check_monotonicity(all, seed);
+    check_solution(all, alone);
+  }
+} // namespace
+
+int
+main(int argc, char **argv)
+{
+  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  test<2>(block_parameters<2>(FrictionLaw::coulomb, .4), 1);
+  test<2>(curved_parameters<2>(FrictionLaw::coulomb, .4), 2);
+  test<3>(block_parameters<3>(FrictionLaw::coulomb, .4), 3);
+  test<3>(curved_parameters<3>(FrictionLaw::coulomb, .4), 4);
+}

@@ -1,0 +1,424 @@
+// Matrices of node blocks do what dense matrices do: products, residuals,
+// look-ups, Gauss-Seidel sweeps in either direction. Several sweeps chased
+// through the matrix in chunks give the same as one after the other, to the
+// last bit. The pseudo-inverse of a singular block and the projector onto what
+// is lost satisfy the four conditions of Moore and Penrose.
+//
+// The leaf matrix is C^T A C: C extends the values of free nodes to hanging
+// ones, A is the stiffness of the elements, assembled here without any
+// constraints.
+//
+// Truncation multiplies by the projectors that it was given, and by nothing
+// where none was given.
+
+#include <common/discretization/leaf_matrix.h>
+#include <common/nodes/node_block_matrix.h>
+#include <common/nodes/sweep_schedule.h>
+
+#include <deal.II/base/quadrature_lib.h>
+
+#include <deal.II/fe/fe_values.h>
+
+#include <Eigen/Sparse>
+
+#include <cstring>
+#include <iostream>
+
+#include <tests/support/check.h>
+#include <tests/support/random_problem.h>
+
+using namespace Tests;
+
+namespace
+{
+  // A symmetric, diagonally dominant matrix with a random pattern of small
+  // bandwidth; a few rows are empty, as those of hanging nodes are.
+  template <int dim>
+  NodeBlockMatrix<dim>
+  make_random_matrix(const unsigned int n,
+                     const unsigned int bandwidth,
+                     Random            &random)
+  {
+    std::vector<std::vector<unsigned int>> pattern(n);
+    std::vector<char>                      empty(n);
+    for (unsigned int i = 0; i < n; ++i)
+      empty[i] = random.chance(.1);
+    for (unsigned int i = 0; i < n; ++i)
+      for (unsigned int j = i + 1; j < std::min(n, i + bandwidth); ++j)
+        if (!empty[i] && !empty[j] && random.chance(.5))
+          {
+            pattern[i].push_back(j);
+            pattern[j].push_back(i);
+          }
+    auto blocks = std::make_shared<NodePattern>();
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        if (!empty[i])
+          pattern[i].push_back(i);
+        blocks->append_row(pattern[i]);
+      }
+    NodeBlockMatrix<dim> A(blocks);
+    for (unsigned int i = 0; i < n; ++i)
+      for (std::size_t e = A.row_begin(i); e < A.row_end(i); ++e)
+        {
+          const unsigned int j = A.column(e);
+          if (i < j)
+            for (unsigned int c = 0; c < dim; ++c)
+              for (unsigned int r = 0; r < dim; ++r)
+                {
+                  const double value                 = random(-1., 1.);
+                  A.block(e)[c * dim + r]            = value;
+                  A.block(A.find(j, i))[r * dim + c] = value;
+                }
+          if (i == j)
+            for (unsigned int c = 0; c < dim; ++c)
+              for (unsigned int r = 0; r <= c; ++r)
+                A.block(e)[c * dim + r] = A.block(e)[r * dim + c] =
+                  (c == r ? 2. * dim * bandwidth : random(-1., 1.));
+        }
+    return A;
+  }
+
+
+
+  template <int dim>
+  void
+  test_matrix()
+  {
+    std::cout << dim << "D, matrix" << std::endl;
+    Random                     random(1);
+    const unsigned int         n     = 60;
+    const NodeBlockMatrix<dim> A     = make_random_matrix<dim>(n, 8, random);
+    const Eigen::MatrixXd      dense = to_dense(A);
+
+    bool         found = true, diagonal_first = true, ascending = true;
+    unsigned int n_empty = 0;
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        n_empty += A.row_begin(i) == A.row_end(i);
+        for (unsigned int j = 0; j < n; ++j)
+          {
+            // Every entry of a block in the pattern is nonzero.
+            const std::size_t e = A.find(i, j);
+            found =
+              found && (e != A.row_end(i)) == (dense(dim * i, dim * j) != 0);
+            found = found && (e == A.row_end(i) || A.column(e) == j);
+          }
+        if (A.row_begin(i) < A.row_end(i))
+          diagonal_first = diagonal_first && A.column(A.row_begin(i)) == i;
+        for (std::size_t e = A.row_begin(i) + 2; e < A.row_end(i); ++e)
+          ascending = ascending && A.column(e - 1) < A.column(e);
+      }
+    check(n_empty > 0 && found, "find() finds what is there, and only that");
+    check(diagonal_first && ascending, "the diagonal comes first");
+
+    Eigen::VectorXd x(dim * n), b(dim * n), y(dim * n), r(dim * n);
+    for (unsigned int i = 0; i < dim * n; ++i)
+      {
+        x(i) = random(-1., 1.);
+        b(i) = random(-1., 1.);
+      }
+    A.vmult(y.data(), x.data());
+    A.residual(r.data(), b.data(), x.data());
+    check_below((y - dense * x).cwiseAbs().maxCoeff(), 1e-13, "product");
+    check_below((r - (b - dense * x)).cwiseAbs().maxCoeff(), 1e-13, "residual");
+
+    // Sweeps over some of the nodes, compared with the definition: solve for
+    // one node, given all others.
+    std::vector<NodeBlock<dim>> inverses(n, zero_block<dim>());
+    NodeRanges                  nodes;
+    const unsigned int          some[][2] = {{0, 7}, {9, 10}, {15, 58}};
+    for (const auto &range : some)
+      nodes.emplace_back(range[0], range[1]);
+    for (unsigned int i = 0; i < n; ++i)
+      if (A.row_begin(i) != A.row_end(i))
+        {
+          NodeBlock<dim> block;
+          std::copy_n(A.block(A.row_begin(i)), dim * dim, block.begin());
+          inverses[i] = pseudo_inverse<dim>(block, 0.);
+        }
+    const auto sweep = [&](Eigen::VectorXd &x, const bool backwards) {
+      for (unsigned int step = 0; step < n; ++step)
+        {
+          const unsigned int i       = backwards ? n - 1 - step : step;
+          bool               relaxed = A.row_begin(i) != A.row_end(i);
+          bool               in_some = false;
+          for (const auto &range : nodes)
+            in_some = in_some || (i >= range.first && i < range.second);
+          if (!relaxed || !in_some)
+            continue;
+          const Eigen::MatrixXd block = dense.block(dim * i, dim * i, dim, dim);
+          const Eigen::VectorXd defect =
+            b.segment(dim * i, dim) - dense.middleRows(dim * i, dim) * x;
+          x.segment(dim * i, dim) += block.inverse() * defect;
+        }
+    };
+    for (const bool backwards : {false, true})
+      {
+        Eigen::VectorXd expected = x, got = x;
+        for (unsigned int step = 0; step < 3; ++step)
+          {
+            sweep(expected, backwards);
+            for (unsigned int k = 0; k < nodes.size(); ++k)
+              relax_nodes<dim>(A,
+                               inverses,
+                               nodes[backwards ? nodes.size() - 1 - k : k],
+                               b.data(),
+                               got.data(),
+                               backwards);
+          }
+        check_below((expected - got).cwiseAbs().maxCoeff(),
+                    1e-14,
+                    std::string("three sweeps ") +
+                      (backwards ? "backwards" : "forwards"));
+
+        // Chunks from one node to more than there are.
+        bool same = true;
+        for (const unsigned int chunk_size : {1, 3, 8, 17, 59, 60, 1000})
+          {
+            GhostExchange            nobody;
+            const SweepSchedule<dim> schedule(A, nodes, chunk_size);
+            Eigen::VectorXd          chased = x, defect(dim * n);
+            gauss_seidel_sweeps<dim>(schedule,
+                                     A,
+                                     inverses,
+                                     b.data(),
+                                     chased.data(),
+                                     backwards,
+                                     3,
+                                     nobody,
+                                     defect.data());
+            A.residual(r.data(), b.data(), got.data());
+            same = same &&
+              std::memcmp(
+                chased.data(), got.data(), dim * n * sizeof(double)) == 0 &&
+              std::memcmp(defect.data(), r.data(), dim * n * sizeof(double)) ==
+                0;
+          }
+        check(same, "sweeps that follow each other closely, to the last bit");
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  test_pseudo_inverse()
+  {
+    std::cout << dim << "D, pseudo-inverse" << std::endl;
+    using Matrix = Eigen::Matrix<double, dim, dim>;
+    Random random(2);
+    double worst = 0;
+    for (unsigned int i = 0; i < 1000; ++i)
+      {
+        // Eigenvalues in [1,10], some of them replaced by rounding noise.
+        Matrix root;
+        for (unsigned int e = 0; e < dim * dim; ++e)
+          root(e) = random(-1., 1.);
+        const Matrix Q = root.householderQr().householderQ();
+        Matrix       D = Matrix::Zero(), lost = Matrix::Zero();
+        for (unsigned int d = 0; d < dim; ++d)
+          if (random.chance(.5))
+            D(d, d) = random(1., 10.);
+          else
+            {
+              D(d, d)    = random(-1e-14, 1e-14);
+              lost(d, d) = 1.;
+            }
+        const Matrix   A = Q * D * Q.transpose();
+        NodeBlock<dim> block, null_space;
+        for (unsigned int e = 0; e < dim * dim; ++e)
+          block[e] = A(e);
+        const NodeBlock<dim> inverse =
+          pseudo_inverse<dim>(block, 1e-10, &null_space);
+        const Matrix B = Eigen::Map<const Matrix>(inverse.data());
+        const Matrix N = Eigen::Map<const Matrix>(null_space.data());
+        worst =
+          std::max({worst,
+                    (A * B * A - A).cwiseAbs().maxCoeff(),
+                    (B * A * B - B).cwiseAbs().maxCoeff(),
+                    (A * B - (A * B).transpose()).cwiseAbs().maxCoeff(),
+                    (B * A - (B * A).transpose()).cwiseAbs().maxCoeff(),
+                    (A * B + N - Matrix::Identity()).cwiseAbs().maxCoeff(),
+                    (N - Q * lost * Q.transpose()).cwiseAbs().maxCoeff()});
+      }
+    check_below(worst, 1e-12, "the conditions of Moore and Penrose");
+  }
+
+
+
+  template <int dim>
+  void
+  test_leaf_matrix()
+  {
+    Random                   random(3);
+    const RandomProblem<dim> problem(
+      block_parameters<dim>(FrictionLaw::none, 0.), 3, .3, random);
+    const auto        &disc        = *problem.discretization;
+    const auto        &constraints = problem.constraints();
+    const unsigned int n_dofs      = disc.dof_handler.n_dofs();
+    std::cout << dim << "D, leaf matrix, " << constraints.n_nodes()
+              << " nodes, " << problem.n_hanging() << " hang" << std::endl;
+
+    using Entry = Eigen::Triplet<double>;
+    std::vector<Entry>                   entries, extension;
+    FEValues<dim>                        fe_values(disc.mapping,
+                            disc.fe,
+                            QGauss<dim>(2),
+                            update_gradients | update_JxW_values);
+    std::vector<types::global_dof_index> indices(disc.fe.n_dofs_per_cell());
+    const FEValuesExtractors::Vector     displacement(0);
+    const double lambda = problem.scene.material().lambda();
+    const double mu     = problem.scene.material().mu();
+    for (const auto &cell : disc.dof_handler.active_cell_iterators())
+      {
+        fe_values.reinit(cell);
+        cell->get_dof_indices(indices);
+        for (unsigned int i = 0; i < indices.size(); ++i)
+          for (unsigned int j = 0; j < indices.size(); ++j)
+            {
+              double sum = 0;
+              for (const unsigned int q : fe_values.quadrature_point_indices())
+                sum += (2 * mu *
+                          (fe_values[displacement].symmetric_gradient(i, q) *
+                           fe_values[displacement].symmetric_gradient(j, q)) +
+                        lambda * fe_values[displacement].divergence(i, q) *
+                          fe_values[displacement].divergence(j, q)) *
+                  fe_values.JxW(q);
+              entries.emplace_back(indices[i], indices[j], sum);
+            }
+      }
+    for (unsigned int i = 0; i < n_dofs; ++i)
+      if (const auto *masters = disc.hanging.get_constraint_entries(i))
+        for (const auto &master : *masters)
+          extension.emplace_back(i, master.first, master.second);
+      else
+        extension.emplace_back(i, i, 1.);
+    Eigen::SparseMatrix<double> A(n_dofs, n_dofs), C(n_dofs, n_dofs);
+    A.setFromTriplets(entries.begin(), entries.end());
+    C.setFromTriplets(extension.begin(), extension.end());
+    const Eigen::MatrixXd expected = Eigen::SparseMatrix<double>(
+      Eigen::SparseMatrix<double>(C.transpose()) * A * C);
+
+    // On one process local numbers are global ones.
+    const Eigen::MatrixXd got = to_dense(problem.matrix());
+    check_below((got - expected).cwiseAbs().maxCoeff() /
+                  expected.cwiseAbs().maxCoeff(),
+                1e-14,
+                "hanging nodes are condensed");
+    bool empty = true;
+    for (unsigned int i = 0; i < constraints.n_nodes(); ++i)
+      empty = empty &&
+        constraints.is_hanging(i) ==
+          (problem.matrix().row_begin(i) == problem.matrix().row_end(i));
+    check(empty, "exactly the rows of hanging nodes are empty");
+  }
+
+
+
+  template <int dim>
+  void
+  test_truncation()
+  {
+    std::cout << dim << "D, truncation" << std::endl;
+    Random     random(4);
+    Parameters parameters = block_parameters<dim>(FrictionLaw::none, 0.);
+    parameters.boundary_conditions.displacement.push_back(
+      {"0", std::vector<std::string>(dim, "free")});
+    parameters.boundary_conditions.displacement.back().components[0] = "0";
+    const RandomProblem<dim> problem(parameters, 2, .4, random);
+    const auto              &constraints = problem.constraints();
+
+    // What is prescribed, or hangs.
+    const Truncation<dim> plain(constraints);
+    double                difference = 0;
+    for (unsigned int i = 0; i < constraints.n_nodes(); ++i)
+      for (unsigned int c = 0; c < dim; ++c)
+        for (unsigned int r = 0; r < dim; ++r)
+          difference += std::abs(plain.projector(i)[c * dim + r] -
+                                 (r == c && !constraints.is_prescribed(i, c) &&
+                                      !constraints.is_hanging(i)
+                                    ? 1.
+                                    : 0.));
+    check_below(difference, 0., "prescribed components and hanging nodes");
+    check_below(
+      plain.n_truncated_components(), 0., "which are not counted as truncated");
+
+    Truncation<dim> truncation(constraints);
+    double          n_held = 0;
+    for (const ContactNode<dim> &p : problem.contact())
+      if (p.n_free_tangents == dim - 1)
+        {
+          const unsigned int rank = random.below(dim + 1);
+          n_held += dim - rank;
+          truncate_at_random<dim>(truncation, p.node, rank, 1., random);
+        }
+    check_below(std::abs(truncation.n_truncated_components() - n_held),
+                1e-12,
+                "the number of truncated components");
+
+    const auto T_omega       = to_dense(truncation, constraints.n_nodes());
+    const Eigen::MatrixXd &T = T_omega.first, A = to_dense(problem.matrix());
+    Eigen::VectorXd        v(T.rows());
+    for (unsigned int i = 0; i < v.size(); ++i)
+      v(i) = random(-1., 1.);
+    Eigen::VectorXd w = v;
+    truncation.apply(w.data());
+    check_below((w - T * v).cwiseAbs().maxCoeff(), 1e-15, "apply()");
+
+    const Eigen::MatrixXd TAT =
+      Eigen::SparseMatrix<double>(Eigen::SparseMatrix<double>(T.sparseView()) *
+                                  Eigen::SparseMatrix<double>(A.sparseView()) *
+                                  Eigen::SparseMatrix<double>(T.sparseView()));
+    difference = 0;
+    for (unsigned int i = 0; i < constraints.n_nodes(); ++i)
+      for (std::size_t e = problem.matrix().row_begin(i);
+           e < problem.matrix().row_end(i);
+           ++e)
+        {
+          const unsigned int   j = problem.matrix().column(e);
+          const NodeBlock<dim> block =
+            truncation.sandwich(i, problem.matrix().block(e), j);
+          for (unsigned int c = 0; c < dim; ++c)
+            for (unsigned int r = 0; r < dim; ++r)
+              difference = std::max(
+                difference,
+                std::abs(block[c * dim + r] - TAT(dim * i + r, dim * j + c)));
+        }
+    check_below(difference, 1e-14, "sandwich()");
+
+    // Agreement is a matter of both projector and curvature.
+    Truncation<dim>    other = truncation;
+    const unsigned int node =
+      problem.contact()[problem.contact().size() / 2].node;
+    bool all_agree = true;
+    for (unsigned int i = 0; i < constraints.n_nodes(); ++i)
+      all_agree = all_agree && truncation.agrees(other, i);
+    check(all_agree, "a copy agrees");
+    other.set(node, identity_block<dim>(), zero_block<dim>());
+    NodeBlock<dim> curvature = zero_block<dim>();
+    curvature[0]             = 1.;
+    Truncation<dim> third    = other;
+    third.set(node, identity_block<dim>(), curvature);
+    check(!third.agrees(other, node) && third.agrees(third, node),
+          "another curvature does not");
+    third.set(node, zero_block<dim>(), zero_block<dim>());
+    check(!third.agrees(other, node), "another projector does not");
+    check(!other.is_identity(node) || other.agrees(plain, node),
+          "the identity agrees with a node never truncated");
+  }
+} // namespace
+
+int
+main(int argc, char **argv)
+{
+  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  test_matrix<2>();
+  test_matrix<3>();
+  test_pseudo_inverse<2>();
+  test_pseudo_inverse<3>();
+  test_leaf_matrix<2>();
+  test_leaf_matrix<3>();
+  test_truncation<2>();
+  test_truncation<3>();
+}
