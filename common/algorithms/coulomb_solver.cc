@@ -1,6 +1,7 @@
-#include <common/parallel/reductions.h>
 #include <common/algorithms/coulomb_solver.h>
 #include <common/algorithms/mixed_fixed_point.h>
+#include <common/contact/contact_forces.h>
+#include <common/parallel/reductions.h>
 
 #include <algorithm>
 #include <array>
@@ -8,52 +9,43 @@
 
 namespace Friction
 {
+  namespace
+  {
+    MultigridLimits
+    limits_of(const SolverSettings &settings)
+    {
+      MultigridLimits limits;
+      limits.inner_tolerance  = settings.inner_tolerance;
+      limits.energy_tolerance = settings.energy_tolerance;
+      limits.maximum_cycles   = settings.maximum_cycles;
+      limits.gives_up_early   = settings.gives_up_early;
+      return limits;
+    }
+  } // namespace
+
+
+
   template <int dim>
-  double
-  force_of_rounding(const DiscreteProblem<dim> &problem, const VectorType &u)
+  void
+  certify(SolverReport                &report,
+          const TrescaFunctional<dim> &functional,
+          const VectorType            &u,
+          const ContactState          &state)
   {
-    double largest = 0;
-    for (unsigned int i = 0; i < problem.matrix.n_rows(); ++i)
-      if (problem.matrix.row_begin(i) < problem.matrix.row_end(i))
-        largest = std::max(
-          largest,
-          trace<dim>(problem.matrix.block(problem.matrix.row_begin(i))) *
-            std::sqrt(dot<dim>(u.begin() + dim * i, u.begin() + dim * i)));
-    return 1e-8 * max_over_processes(largest, problem.communicator());
-  }
-
-
-
-  double
-  SolverReport::rho_tau_as_printed() const
-  {
-    double logarithm = 0;
-    for (const double change : outer_changes)
-      logarithm += std::log(std::max(change, 1e-300));
-    return outer_changes.empty() ? 0.
-                                 : std::exp(logarithm / outer_changes.size());
-  }
-
-
-
-  double
-  SolverReport::rho_tau_contraction() const
-  {
-    if (outer_changes.size() < 2 || outer_changes.front() == 0)
-      return 0.;
-    return std::pow(outer_changes.back() / outer_changes.front(),
-                    1. / (outer_changes.size() - 1));
+    const DiscreteProblem<dim> &problem = functional.discrete_problem();
+    report.residual.reinit(u);
+    problem.stiffness.residual(report.residual, problem.forces, u);
+    report.energy      = functional.energy(u, report.residual, state);
+    report.certificate = make_certificate(problem, u, report.residual, state);
   }
 
 
 
   template <int dim>
-  CoulombSolver<dim>::CoulombSolver(const LevelHierarchy<dim>  &hierarchy,
-                                    const DiscreteProblem<dim> &problem,
-                                    const SolverSettings       &settings)
-    : problem(problem)
+  CoulombSolver<dim>::CoulombSolver(MonotoneMultigrid<dim> &iteration,
+                                    const SolverSettings   &settings)
+    : iteration(iteration)
     , settings(settings)
-    , iteration(hierarchy, problem, settings)
   {}
 
 
@@ -64,17 +56,19 @@ namespace Friction
                             ContactState   &state,
                             const Progress &progress)
   {
-    SolverReport     report;
-    const PhaseCosts before = phase_costs();
-    const bool       coulomb =
-      problem.has_friction() && problem.friction_law == FrictionLaw::coulomb;
+    SolverReport                report;
+    const DiscreteProblem<dim> &problem = iteration.problem();
+    const bool                  coulomb = problem.has_coulomb_friction();
+    const PhaseCosts before = phase_costs(problem.communicator());
 
+    Iterate x = {u, state};
     if (coulomb && settings.algorithm == Algorithm::fixed_point)
-      iterate_normal_forces(report, u, state, progress);
+      iterate_normal_forces(report, x, progress);
     else
       {
+        x.updates_normal_forces = coulomb;
         const MultigridResult result =
-          iteration.solve(u, state, coulomb, progress);
+          run_multigrid(iteration, x, limits_of(settings), progress);
         report.converged        = result.converged;
         report.inner_converged  = result.converged;
         report.algebraic_error  = result.algebraic_error;
@@ -83,39 +77,13 @@ namespace Friction
         report.contraction      = result.contraction();
       }
 
-    certify(report, u, state);
+    certify(report, iteration.functional(), u, state);
     if (!(report.certificate.largest() <= settings.certificate_tolerance))
       report.converged = false;
-    report.costs         = phase_costs() - before;
-    report.matrix_memory = problem.matrix.memory_consumption();
+    report.costs         = phase_costs(problem.communicator()) - before;
+    report.matrix_memory = problem.stiffness.memory_consumption();
     report.solver_memory = iteration.memory_consumption();
     return report;
-  }
-
-
-
-  template <int dim>
-  void
-  CoulombSolver<dim>::certify(SolverReport       &report,
-                              VectorType         &u,
-                              const ContactState &state) const
-  {
-    iteration.leading_smoother().ghosts().update(u.begin(), dim);
-    const bool coulomb =
-      problem.has_friction() && problem.friction_law == FrictionLaw::coulomb;
-    report.residual.reinit(u);
-    problem.matrix.residual(
-      report.residual.begin(), problem.forces.begin(), u.begin());
-    report.energy =
-      TrescaFunctional<dim>(problem).energy(u, report.residual, state);
-    report.certificate = make_certificate<dim>(u,
-                                               report.residual,
-                                               problem.constraints,
-                                               problem.contact,
-                                               state,
-                                               problem.effective_coefficient(),
-                                               coulomb,
-                                               force_of_rounding(problem, u));
   }
 
 
@@ -126,10 +94,12 @@ namespace Friction
   template <int dim>
   void
   CoulombSolver<dim>::iterate_normal_forces(SolverReport   &report,
-                                            VectorType     &u,
-                                            ContactState   &state,
+                                            Iterate        &x,
                                             const Progress &progress)
   {
+    const DiscreteProblem<dim> &problem = iteration.problem();
+    ContactState               &state   = x.state;
+
     // Friction magnifies what is wrong with the normal forces.
     const double tolerance =
       settings.outer_tolerance / std::max(1., problem.effective_coefficient());
@@ -143,7 +113,7 @@ namespace Friction
           given[p] = state.normal_force(p);
 
         const MultigridResult result =
-          iteration.solve(u, state, false, progress);
+          run_multigrid(iteration, x, limits_of(settings), progress);
         report.cycles.insert(
           report.cycles.end(), result.cycles.begin(), result.cycles.end());
         if (report.outer_iterations++ == 0)
@@ -153,7 +123,7 @@ namespace Friction
         if (!result.converged)
           return;
 
-        iteration.update_normal_forces(state, u);
+        set_normal_forces(problem.contact, x.residual, state);
         double change = 0, norm = 0;
         for (unsigned int p = 0; p < state.size(); ++p)
           {
@@ -178,10 +148,14 @@ namespace Friction
 
 
 
-  template double force_of_rounding(const DiscreteProblem<2> &,
-                                    const VectorType &);
-  template double force_of_rounding(const DiscreteProblem<3> &,
-                                    const VectorType &);
+  template void certify(SolverReport &,
+                        const TrescaFunctional<2> &,
+                        const VectorType &,
+                        const ContactState &);
+  template void certify(SolverReport &,
+                        const TrescaFunctional<3> &,
+                        const VectorType &,
+                        const ContactState &);
 
   template class CoulombSolver<2>;
   template class CoulombSolver<3>;

@@ -1,54 +1,20 @@
 #include <common/algorithms/initial_guess.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace Friction
 {
   template <int dim>
-  VectorType
-  contact_tractions(const VectorType            &residual,
-                    const NodalConstraints<dim> &constraints,
-                    const ContactBoundary<dim>  &contact,
-                    const ContactState          &state)
-  {
-    VectorType tractions(constraints.partitioner());
-    for (unsigned int p = 0; p < contact.size(); ++p)
-      if (state.in_contact(p) || state.normal_force(p) > 0)
-        {
-          const Tensor<1, dim> force = contact_force(contact[p], residual);
-          for (unsigned int d = 0; d < dim; ++d)
-            tractions.local_element(dim * contact[p].node + d) =
-              force[d] / contact[p].measure;
-        }
-    return tractions;
-  }
-
-
-
-  double
-  lift_above_rounding(VectorType &v)
-  {
-    const double largest = v.linfty_norm();
-    const double lift =
-      largest > 0 ? std::exp2(std::ceil(std::log2(largest)) + 1.) : 0.;
-    v.add(lift);
-    v.update_ghost_values();
-    return lift;
-  }
-
-
-
-  template <int dim>
   ContactState
-  make_initial_guess(VectorType                  &u,
-                     const VectorType            &tractions,
-                     const NodalConstraints<dim> &constraints,
-                     const ContactBoundary<dim>  &contact,
-                     const bool                   with_friction)
+  make_initial_guess(const Discretization<dim> &discretization,
+                     VectorType                &u,
+                     const VectorType          &tractions)
   {
-    constraints.impose(u);
-    ContactState state(contact.size(), with_friction);
+    const ContactBoundary<dim> &contact = discretization.contact();
+    const Scene<dim>           &scene   = discretization.scene();
+    ContactState                state(contact.size(),
+                       discretization.problem().has_friction());
+    discretization.constraints().impose(u);
     for (unsigned int p = 0; p < contact.size(); ++p)
       {
         const ContactNode<dim> &node   = contact[p];
@@ -56,8 +22,10 @@ namespace Friction
         if (excess > 0)
           for (unsigned int d = 0; d < dim; ++d)
             u.local_element(dim * node.node + d) -= excess * node.normal()[d];
-        state.set_normal_force(
-          p, node.measure * std::max(0., -normal_component(node, tractions)));
+        const double stress = scene.friction_law() == FrictionLaw::tresca ?
+          scene.friction_bound()->value(node.point) :
+          std::max(0., -normal_component(node, tractions));
+        state.set_normal_force(p, node.measure * stress);
         state.set(p, excess >= 0, false);
       }
     return state;
@@ -65,23 +33,10 @@ namespace Friction
 
 
 
-  template VectorType contact_tractions(const VectorType &,
-                                        const NodalConstraints<2> &,
-                                        const ContactBoundary<2> &,
-                                        const ContactState &);
-  template VectorType contact_tractions(const VectorType &,
-                                        const NodalConstraints<3> &,
-                                        const ContactBoundary<3> &,
-                                        const ContactState &);
-
-  template ContactState make_initial_guess(VectorType &,
-                                           const VectorType &,
-                                           const NodalConstraints<2> &,
-                                           const ContactBoundary<2> &,
-                                           const bool);
-  template ContactState make_initial_guess(VectorType &,
-                                           const VectorType &,
-                                           const NodalConstraints<3> &,
-                                           const ContactBoundary<3> &,
-                                           const bool);
+  template ContactState make_initial_guess(const Discretization<2> &,
+                                           VectorType &,
+                                           const VectorType &);
+  template ContactState make_initial_guess(const Discretization<3> &,
+                                           VectorType &,
+                                           const VectorType &);
 } // namespace Friction

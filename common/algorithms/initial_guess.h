@@ -1,50 +1,29 @@
 #ifndef friction_algorithms_initial_guess_h
 #define friction_algorithms_initial_guess_h
 
-#include <common/discretization/contact_boundary.h>
 #include <common/contact/contact_state.h>
+#include <common/discretization/discretization.h>
 
 namespace Friction
 {
   /**
-   * Nodal contact forces turned into a field of stresses on the contact
-   * boundary, for interpolation to another mesh, for the error estimator and
-   * for output: force on the body over nodal measure at the nodes that are in
-   * contact, zero at all other nodes.
-   *
-   * @param residual  f - A u.
-   */
-  template <int dim>
-  VectorType contact_tractions(const VectorType            &residual,
-                               const NodalConstraints<dim> &constraints,
-                               const ContactBoundary<dim>  &contact,
-                               const ContactState          &state);
-
-  /**
-   * Adds a constant of at least twice the largest value to @p v and returns it.
-   * In debug mode SolutionTransfer demands that neighbouring cells interpolate
-   * the same values, relative to these; where values are nothing but rounding,
-   * as those that vanish by symmetry are, they do not. The constant is a power
-   * of two, so that it can be taken off again without leaving a trace: zeros
-   * stay zeros.
-   */
-  double lift_above_rounding(VectorType &v);
-
-  /**
    * Makes an initial guess out of a displacement and tractions interpolated
    * from a coarser mesh (or of zeros): imposes prescribed values, moves nodes
    * out of the obstacle, and turns normal tractions back into nodal normal
-   * forces.
+   * forces. Nodes that have come to lie at the obstacle or inside start in
+   * contact.
    *
    * Stresses, not forces, are what can be interpolated: forces shrink with the
    * size of the cells.
+   *
+   * With Tresca's law there is nothing to be guessed: the scene gives the
+   * largest tangential stress, and that times the measure of the node is its
+   * bound, at open nodes, too.
    */
   template <int dim>
-  ContactState make_initial_guess(VectorType                  &u,
-                                  const VectorType            &tractions,
-                                  const NodalConstraints<dim> &constraints,
-                                  const ContactBoundary<dim>  &contact,
-                                  const bool                   with_friction);
+  ContactState make_initial_guess(const Discretization<dim> &discretization,
+                                  VectorType                &u,
+                                  const VectorType          &tractions);
 } // namespace Friction
 
 #endif

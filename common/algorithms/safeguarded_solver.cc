@@ -16,8 +16,7 @@ namespace Friction
     std::string
     name_of(const DiscreteProblem<dim> &problem, const SolverSettings &settings)
     {
-      if (!problem.has_friction() ||
-          problem.friction_law != FrictionLaw::coulomb)
+      if (!problem.has_coulomb_friction())
         return "the multigrid iteration";
       return settings.algorithm == Algorithm::fixed_point ? "Algorithm 2"
                                                           : "Algorithm 3";
@@ -41,14 +40,16 @@ namespace Friction
 
 
     bool
-    is_finite(const VectorType &u, const ContactState &state)
+    is_finite(const VectorType   &u,
+              const ContactState &state,
+              const MPI_Comm      comm)
     {
       bool infinite = false;
       for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
         infinite = infinite || !std::isfinite(u.local_element(i));
       for (unsigned int p = 0; p < state.size(); ++p)
         infinite = infinite || !std::isfinite(state.normal_force(p));
-      return !true_on_any_process(infinite, u.get_mpi_communicator());
+      return !true_on_any_process(infinite, comm);
     }
 
 
@@ -66,14 +67,12 @@ namespace Friction
 
 
     // What all other attempts have in common. They are to find a solution, to
-    // the usual tolerance, and by the method that is known to work best.
+    // the usual tolerance.
     SolverSettings
     fallback_settings(const SolverSettings &settings)
     {
-      SolverSettings result    = first_settings(settings);
-      result.energy_tolerance  = 0.;
-      result.coarse_correction = CoarseCorrection::truncated;
-      result.truncation        = TruncationVariant::phases;
+      SolverSettings result   = first_settings(settings);
+      result.energy_tolerance = 0.;
       return result;
     }
 
@@ -98,35 +97,79 @@ namespace Friction
 
 
   template <int dim>
-  SafeguardedSolver<dim>::SafeguardedSolver(
-    const LevelHierarchy<dim>  &hierarchy,
-    const DiscreteProblem<dim> &problem,
-    const SolverSettings       &settings)
-    : hierarchy(hierarchy)
-    , problem(problem)
+  SafeguardedSolver<dim>::SafeguardedSolver(DiscreteProblem<dim>   &problem,
+                                            Levels<dim>            &levels,
+                                            MonotoneMultigrid<dim> &iteration,
+                                            const SolverSettings   &settings)
+    : problem(problem)
+    , levels(levels)
+    , iteration(iteration)
     , settings(settings)
-    , first(hierarchy, problem, first_settings(settings))
+    , line_search(iteration.functional(),
+                  settings.maximum_damping,
+                  settings.recombined_steps)
+    , short_steps(iteration.functional(),
+                  std::min(.5, settings.maximum_damping),
+                  0)
   {}
 
 
 
   template <int dim>
-  SolverReport
-  SafeguardedSolver<dim>::attempt(const std::string  &name,
-                                  CoulombSolver<dim> &solver,
-                                  VectorType         &u,
-                                  ContactState       &state,
-                                  SolverReport       &all,
-                                  const Progress     &progress) const
+  MonotoneMultigrid<dim>
+  SafeguardedSolver<dim>::best_iteration()
   {
-    const VectorType   start       = u;
-    const ContactState start_state = state;
-    SolverReport       report      = solver.solve(u, state, progress);
-    add_attempt(all, name, report, report.cycles);
-    if (!is_finite(u, state))
+    MonotoneMultigrid<dim> result = iteration.with(line_search);
+    if (settings.truncation != TruncationVariant::phases)
       {
-        u     = start;
-        state = start_state;
+        if (!phases)
+          phases =
+            std::make_unique<Linearization<dim>>(problem,
+                                                 TruncationVariant::phases);
+        result = result.with(*phases);
+      }
+    if (settings.coarse_correction != CoarseCorrection::truncated)
+      {
+        if (!truncated)
+          truncated = std::make_unique<TruncatedCorrection<dim>>(
+            levels, settings.cycle, settings.coarse_smoothing_steps);
+        result = result.with(*truncated);
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  Correction<dim> &
+  SafeguardedSolver<dim>::algebraic_correction()
+  {
+    if (!algebraic)
+      algebraic =
+        std::make_unique<AlgebraicCorrection<dim>>(problem,
+                                                   settings.coarsest_method);
+    return *algebraic;
+  }
+
+
+
+  template <int dim>
+  SolverReport
+  SafeguardedSolver<dim>::attempt(const std::string      &name,
+                                  MonotoneMultigrid<dim> &with_iteration,
+                                  const SolverSettings   &with_settings,
+                                  const Search           &search) const
+  {
+    const VectorType   start       = search.u;
+    const ContactState start_state = search.state;
+    SolverReport       report =
+      CoulombSolver<dim>(with_iteration, with_settings)
+        .solve(search.u, search.state, search.progress);
+    add_attempt(search.all, name, report, report.cycles);
+    if (!is_finite(search.u, search.state, problem.communicator()))
+      {
+        search.u     = start;
+        search.state = start_state;
       }
     return report;
   }
@@ -140,25 +183,24 @@ namespace Friction
                                 const Progress &progress)
   {
     if (!settings.safeguards)
-      return first.solve(u, state, progress);
+      return CoulombSolver<dim>(iteration, settings).solve(u, state, progress);
 
-    const PhaseCosts before = phase_costs();
-    const bool       coulomb =
-      problem.has_friction() && problem.friction_law == FrictionLaw::coulomb;
-    const VectorType   initial       = u;
+    const PhaseCosts   before  = phase_costs(problem.communicator());
+    const bool         coulomb = problem.has_coulomb_friction();
+    const VectorType   initial = u;
     const ContactState initial_state = state;
+    const std::string  name          = name_of(problem, settings);
     SolverReport       all;
+    const Search       search = {u, state, all, progress};
     SolverReport       report =
-      attempt(name_of(problem, settings), first, u, state, all, progress);
+      attempt(name, iteration, first_settings(settings), search);
 
     if (!report.converged)
       {
         // Shorter steps, each of its own direction: a line search works with
         // the normal forces of the moment and may go too far for those that
         // come.
-        SolverSettings cautious   = fallback_settings(settings);
-        cautious.maximum_damping  = std::min(.5, settings.maximum_damping);
-        cautious.recombined_steps = 0;
+        MonotoneMultigrid<dim> cautious = best_iteration().with(short_steps);
         // Where only the outer iteration of Algorithm 2 has failed, neither of
         // the two attempts that follow would be any better.
         const bool outer_failure = coulomb && report.inner_converged &&
@@ -167,39 +209,33 @@ namespace Friction
           !outer_failure && (!coulomb || !phases_change(report));
         if (!slow_corrections && !outer_failure)
           {
-            CoulombSolver<dim> solver(hierarchy, problem, cautious);
-            report = attempt(name_of(problem, settings) + " with short steps",
-                             solver,
-                             u,
-                             state,
-                             all,
-                             progress);
+            report = attempt(name + " with short steps",
+                             cautious,
+                             fallback_settings(settings),
+                             search);
             slow_corrections = !phases_change(report);
           }
         if (!report.converged && slow_corrections)
           {
-            SolverSettings algebraic    = cautious;
-            algebraic.coarse_correction = CoarseCorrection::algebraic;
-            algebraic.maximum_damping = std::min(1., settings.maximum_damping);
-            CoulombSolver<dim> solver(hierarchy, problem, algebraic);
-            report = attempt(name_of(problem, settings) +
-                               " with algebraic corrections",
-                             solver,
-                             u,
-                             state,
-                             all,
-                             progress);
+            LineSearch<dim> whole_steps(iteration.functional(),
+                                        std::min(1., settings.maximum_damping),
+                                        0);
+            MonotoneMultigrid<dim> without_levels =
+              cautious.with(algebraic_correction()).with(whole_steps);
+            report = attempt(name + " with algebraic corrections",
+                             without_levels,
+                             fallback_settings(settings),
+                             search);
           }
       }
     if (!report.converged && coulomb)
-      report = mixed_algorithm_2(
-        problem.effective_coefficient(), u, state, all, progress);
+      report = mixed_algorithm_2(search);
     // The last two start anew, and what they have got to is of no use if they
     // do not arrive.
     const auto start_anew = [&](const auto &method) {
       VectorType   other       = initial;
       ContactState other_state = initial_state;
-      report                   = method(other, other_state);
+      report                   = method({other, other_state, all, progress});
       if (report.converged)
         {
           u     = other;
@@ -207,23 +243,20 @@ namespace Friction
         }
     };
     if (!report.converged && coulomb)
-      start_anew([&](VectorType &v, ContactState &s) {
-        return careful_algorithm_2(v, s, all, progress);
-      });
+      start_anew(
+        [&](const Search &other) { return careful_algorithm_2(other); });
     if (!report.converged && coulomb)
-      start_anew([&](VectorType &v, ContactState &s) {
-        return continuation(v, s, all, progress);
-      });
+      start_anew([&](const Search &other) { return continuation(other); });
 
     if (all.attempts.size() > 1)
       {
         // What is reported of a failure is what is returned, and not the end of
         // an attempt that has been thrown away.
         if (!report.converged)
-          first.certify(report, u, state);
+          certify(report, iteration.functional(), u, state);
         report.cycles   = all.cycles;
         report.attempts = all.attempts;
-        report.costs    = phase_costs() - before;
+        report.costs    = phase_costs(problem.communicator()) - before;
       }
     return report;
   }
@@ -232,11 +265,7 @@ namespace Friction
 
   template <int dim>
   SolverReport
-  SafeguardedSolver<dim>::mixed_algorithm_2(const double    coefficient,
-                                            VectorType     &u,
-                                            ContactState   &state,
-                                            SolverReport   &all,
-                                            const Progress &progress) const
+  SafeguardedSolver<dim>::mixed_algorithm_2(const Search &search)
   {
     SolverSettings mixed         = fallback_settings(settings);
     mixed.algorithm              = Algorithm::fixed_point;
@@ -244,25 +273,16 @@ namespace Friction
     mixed.mixed_outer_iterations = 10;
     mixed.maximum_outer_iterations =
       std::max(200u, settings.maximum_outer_iterations);
-    DiscreteProblem<dim> with_coefficient = {problem.matrix,
-                                             problem.forces,
-                                             problem.constraints,
-                                             problem.contact,
-                                             problem.friction_law,
-                                             coefficient};
 
-    const std::string name = "Algorithm 2 with mixed normal forces";
-    SolverReport      report;
-    {
-      CoulombSolver<dim> solver(hierarchy, with_coefficient, mixed);
-      report = attempt(name, solver, u, state, all, progress);
-    }
+    const std::string      name = "Algorithm 2 with mixed normal forces";
+    MonotoneMultigrid<dim> best = best_iteration();
+    SolverReport           report = attempt(name, best, mixed, search);
     if (!report.inner_converged)
       {
-        mixed.coarse_correction = CoarseCorrection::algebraic;
-        CoulombSolver<dim> solver(hierarchy, with_coefficient, mixed);
+        MonotoneMultigrid<dim> without_levels =
+          best.with(algebraic_correction());
         report = attempt(
-          name + ", algebraic corrections", solver, u, state, all, progress);
+          name + ", algebraic corrections", without_levels, mixed, search);
       }
     return report;
   }
@@ -276,10 +296,7 @@ namespace Friction
   // attempt.
   template <int dim>
   SolverReport
-  SafeguardedSolver<dim>::careful_algorithm_2(VectorType     &u,
-                                              ContactState   &state,
-                                              SolverReport   &all,
-                                              const Progress &progress) const
+  SafeguardedSolver<dim>::careful_algorithm_2(const Search &search)
   {
     SolverSettings careful           = fallback_settings(settings);
     careful.algorithm                = Algorithm::fixed_point;
@@ -291,19 +308,17 @@ namespace Friction
       .01 * std::max(1., problem.effective_coefficient());
     const std::string name =
       "Algorithm 2 with small steps of the normal forces";
-    SolverReport report, steps;
-    {
-      CoulombSolver<dim> solver(hierarchy, problem, careful);
-      report = attempt(name, solver, u, state, steps, progress);
-    }
+    SolverReport           steps;
+    const Search           inner  = {search.u, search.state, steps, search.progress};
+    MonotoneMultigrid<dim> best   = best_iteration();
+    SolverReport           report = attempt(name, best, careful, inner);
     if (report.inner_converged)
       {
         careful.outer_tolerance        = settings.outer_tolerance;
         careful.mixed_outer_iterations = 10;
-        CoulombSolver<dim> solver(hierarchy, problem, careful);
-        report = attempt(name, solver, u, state, steps, progress);
+        report = attempt(name, best, careful, inner);
       }
-    add_attempt(all, name, report, steps.cycles);
+    add_attempt(search.all, name, report, steps.cycles);
     return report;
   }
 
@@ -313,12 +328,9 @@ namespace Friction
   // square root of the last factor where it does not. All of it is one attempt.
   template <int dim>
   SolverReport
-  SafeguardedSolver<dim>::continuation(VectorType     &u,
-                                       ContactState   &state,
-                                       SolverReport   &all,
-                                       const Progress &progress) const
+  SafeguardedSolver<dim>::continuation(const Search &search)
   {
-    const double target = problem.effective_coefficient();
+    const double target = problem.friction_coefficient;
     // Where most problems are easy.
     constexpr double easy            = .25;
     constexpr double smallest_factor = 1.05;
@@ -329,15 +341,17 @@ namespace Friction
         const double coefficient = solved == 0
           ? std::min(easy, target / 2)
           : std::min(solved * factor, target);
-        VectorType   next        = u;
-        ContactState next_state  = state;
+        VectorType   next            = search.u;
+        ContactState next_state      = search.state;
+        problem.friction_coefficient = coefficient;
         report =
-          mixed_algorithm_2(coefficient, next, next_state, steps, progress);
+          mixed_algorithm_2({next, next_state, steps, search.progress});
+        problem.friction_coefficient = target;
         if (report.converged)
           {
-            solved = coefficient;
-            u      = next;
-            state  = next_state;
+            solved       = coefficient;
+            search.u     = next;
+            search.state = next_state;
           }
         else
           {
@@ -351,7 +365,7 @@ namespace Friction
     std::ostringstream name;
     name << "continuation from less friction, up to the coefficient " << solved
          << ",";
-    add_attempt(all, name.str(), report, steps.cycles);
+    add_attempt(search.all, name.str(), report, steps.cycles);
     return report;
   }
 

@@ -2,7 +2,10 @@
 #define friction_algorithms_safeguarded_solver_h
 
 #include <common/algorithms/coulomb_solver.h>
+#include <common/iteration/algebraic_correction.h>
+#include <common/iteration/truncated_correction.h>
 
+#include <memory>
 #include <string>
 
 namespace Friction
@@ -41,12 +44,20 @@ namespace Friction
   class SafeguardedSolver
   {
   public:
-    using Progress = typename CoulombSolver<dim>::Progress;
-
-    /** As for CoulombSolver. */
-    SafeguardedSolver(const LevelHierarchy<dim>  &hierarchy,
-                      const DiscreteProblem<dim> &problem,
-                      const SolverSettings       &settings);
+    /**
+     * @param problem    whose coefficient of friction the last attempt changes
+     *                   while it lasts.
+     * @param levels     of the same problem, for corrections.
+     * @param iteration  the step to begin with. Other attempts exchange one or
+     *                   two of its parts and share all others.
+     * @param settings   that the parts of the iteration have been made with.
+     *
+     * References are kept.
+     */
+    SafeguardedSolver(DiscreteProblem<dim>   &problem,
+                      Levels<dim>            &levels,
+                      MonotoneMultigrid<dim> &iteration,
+                      const SolverSettings   &settings);
 
     /**
      * Solves, and certifies the solution; as CoulombSolver::solve(). The report
@@ -58,33 +69,41 @@ namespace Friction
     solve(VectorType &u, ContactState &state, const Progress &progress = {});
 
   private:
-    const LevelHierarchy<dim> &hierarchy;
-    const DiscreteProblem<dim> problem;
-    const SolverSettings       settings;
-    CoulombSolver<dim>         first;
+    DiscreteProblem<dim>   &problem;
+    Levels<dim>            &levels;
+    MonotoneMultigrid<dim> &iteration;
+    const SolverSettings    settings;
 
-    SolverReport attempt(const std::string  &name,
-                         CoulombSolver<dim> &solver,
-                         VectorType         &u,
-                         ContactState       &state,
-                         SolverReport       &all,
-                         const Progress     &progress) const;
+    // Parts of later attempts, made when the first of them is.
+    std::unique_ptr<Linearization<dim>>       phases;
+    std::unique_ptr<TruncatedCorrection<dim>> truncated;
+    std::unique_ptr<AlgebraicCorrection<dim>> algebraic;
+    LineSearch<dim>                           line_search, short_steps;
 
-    SolverReport mixed_algorithm_2(const double    coefficient,
-                                   VectorType     &u,
-                                   ContactState   &state,
-                                   SolverReport   &all,
-                                   const Progress &progress) const;
+    // The iteration with the parts that are known to work best.
+    MonotoneMultigrid<dim> best_iteration();
 
-    SolverReport careful_algorithm_2(VectorType     &u,
-                                     ContactState   &state,
-                                     SolverReport   &all,
-                                     const Progress &progress) const;
+    Correction<dim> &algebraic_correction();
 
-    SolverReport continuation(VectorType     &u,
-                              ContactState   &state,
-                              SolverReport   &all,
-                              const Progress &progress) const;
+    // What is being solved, and what has been tried so far.
+    struct Search
+    {
+      VectorType     &u;
+      ContactState   &state;
+      SolverReport   &all;
+      const Progress &progress;
+    };
+
+    SolverReport attempt(const std::string      &name,
+                         MonotoneMultigrid<dim> &with_iteration,
+                         const SolverSettings   &with_settings,
+                         const Search           &search) const;
+
+    SolverReport mixed_algorithm_2(const Search &search);
+
+    SolverReport careful_algorithm_2(const Search &search);
+
+    SolverReport continuation(const Search &search);
   };
 
 

@@ -63,18 +63,33 @@ namespace Friction
 
 
   template <int dim>
-  Certificate
-  make_certificate(const VectorType            &u,
-                   const VectorType            &residual,
-                   const NodalConstraints<dim> &constraints,
-                   const ContactBoundary<dim>  &contact,
-                   const ContactState          &state,
-                   const double                 friction_coefficient,
-                   const bool                   coulomb,
-                   const double                 force_of_rounding)
+  double
+  force_of_rounding(const DiscreteProblem<dim> &problem, const VectorType &u)
   {
-    std::vector<char> is_contact_node(constraints.n_owned_nodes(), 0);
-    double            force_scale = force_of_rounding, length_scale = 0;
+    const NodeBlockMatrix<dim> &A       = problem.stiffness.blocks();
+    double                      largest = 0;
+    for (unsigned int i = 0; i < A.n_rows(); ++i)
+      if (A.row_begin(i) < A.row_end(i))
+        largest = std::max(
+          largest,
+          trace<dim>(A.block(A.row_begin(i))) *
+            std::sqrt(dot<dim>(u.begin() + dim * i, u.begin() + dim * i)));
+    return 1e-8 * max_over_processes(largest, problem.communicator());
+  }
+
+
+
+  template <int dim>
+  Certificate
+  make_certificate(const DiscreteProblem<dim> &problem,
+                   const VectorType           &u,
+                   const VectorType           &residual,
+                   const ContactState         &state)
+  {
+    const NodalConstraints<dim> &constraints = problem.constraints;
+    const ContactBoundary<dim>  &contact     = problem.contact;
+    std::vector<char>            is_contact_node(constraints.n_owned_nodes(), 0);
+    double force_scale = force_of_rounding(problem, u), length_scale = 0;
     for (const ContactNode<dim> &node : contact)
       is_contact_node[node.node] = 1;
 
@@ -118,9 +133,10 @@ namespace Friction
 
         // The force on the body at the node, R = A u - f, is minus the
         // residual.
-        const double tau   = coulomb ? std::max(0., pressing)
-                                     : state.normal_force(p) / force_scale;
-        const double bound = friction_coefficient * tau;
+        const double tau   = problem.has_coulomb_friction()
+            ? std::max(0., pressing)
+            : state.normal_force(p) / force_scale;
+        const double bound = problem.effective_coefficient() * tau;
         const auto   r_T   = tangential_components<dim>(node, residual);
         const auto   u_T   = tangential_components<dim>(node, u);
         double       norm = 0, slip_norm = 0;
@@ -169,20 +185,17 @@ namespace Friction
 
 
 
-  template Certificate make_certificate(const VectorType &,
+  template Certificate make_certificate(const DiscreteProblem<2> &,
                                         const VectorType &,
-                                        const NodalConstraints<2> &,
-                                        const ContactBoundary<2> &,
-                                        const ContactState &,
-                                        const double,
-                                        const bool,
-                                        const double);
-  template Certificate make_certificate(const VectorType &,
                                         const VectorType &,
-                                        const NodalConstraints<3> &,
-                                        const ContactBoundary<3> &,
-                                        const ContactState &,
-                                        const double,
-                                        const bool,
-                                        const double);
+                                        const ContactState &);
+  template Certificate make_certificate(const DiscreteProblem<3> &,
+                                        const VectorType &,
+                                        const VectorType &,
+                                        const ContactState &);
+
+  template double force_of_rounding(const DiscreteProblem<2> &,
+                                    const VectorType &);
+  template double force_of_rounding(const DiscreteProblem<3> &,
+                                    const VectorType &);
 } // namespace Friction

@@ -1,7 +1,7 @@
 #ifndef friction_contact_certificate_h
 #define friction_contact_certificate_h
 
-#include <common/discretization/contact_boundary.h>
+#include <common/discretization/discrete_problem.h>
 #include <common/contact/contact_state.h>
 
 #include <string>
@@ -34,25 +34,30 @@ namespace Friction
   };
 
   /**
-   * Evaluates the certificate from scratch: of the state, only the normal
-   * forces given for Tresca friction are used.
+   * Evaluates the certificate from scratch: with Coulomb's law the bound is F
+   * times the normal force of @p u itself, and nothing of the state is used;
+   * otherwise it is F times the given normal force of the state.
+   *
+   * Forces are divided by no less than force_of_rounding(), so that a body that
+   * merely moves, without any force but those of rounding, is in equilibrium.
+   * Collective.
    *
    * @param residual  f - A u, at all nodes.
-   * @param coulomb   the bound is F times the normal force of @p u itself;
-   *                  otherwise F times that of the state.
-   * @param force_of_rounding  forces are not divided by less than this, so that
-   *                  a body that merely moves, without any force but those of
-   *                  rounding, is in equilibrium.
    */
   template <int dim>
-  Certificate make_certificate(const VectorType            &u,
-                               const VectorType            &residual,
-                               const NodalConstraints<dim> &constraints,
-                               const ContactBoundary<dim>  &contact,
-                               const ContactState          &state,
-                               const double friction_coefficient,
-                               const bool   coulomb,
-                               const double force_of_rounding = 0.);
+  Certificate make_certificate(const DiscreteProblem<dim> &problem,
+                               const VectorType           &u,
+                               const VectorType           &residual,
+                               const ContactState         &state);
+
+  /**
+   * The largest force that the displacement of a single node would cause,
+   * reduced to what is left of it where rounding errors are all there is.
+   * Collective.
+   */
+  template <int dim>
+  double force_of_rounding(const DiscreteProblem<dim> &problem,
+                           const VectorType           &u);
 } // namespace Friction
 
 #endif

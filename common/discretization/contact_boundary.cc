@@ -83,10 +83,7 @@ namespace Friction
     const DoFHandler<dim>           &dof_handler,
     const AffineConstraints<double> &hanging,
     const NodalConstraints<dim>     &constraints,
-    const types::boundary_id         boundary_id,
-    const Obstacle<dim>             &obstacle,
-    const ContactNormal              contact_normal,
-    const bool                       ignore_prescribed_penetration)
+    const Scene<dim>                &scene)
   {
     // First sum up, per vertex on Gamma_S, the normals of the adjacent faces
     // and the node's share of the boundary measure. Each process takes the
@@ -109,7 +106,7 @@ namespace Friction
       if (!cell->is_artificial())
         for (const unsigned int f : cell->face_indices())
           if (cell->face(f)->at_boundary() &&
-              cell->face(f)->boundary_id() == boundary_id)
+              cell->face(f)->boundary_id() == scene.contact_boundary_id())
             {
               const auto face = cell->face(f);
               if (cell->is_locally_owned())
@@ -164,60 +161,58 @@ namespace Friction
             Tensor<1, dim> normal;
             for (unsigned int d = 0; d < dim; ++d)
               normal[d] = normals.local_element(dim * entry.first + d);
-            add_node(entry.first,
-                     entry.second,
-                     contact_normal == ContactNormal::body
-                       ? normal / normal.norm()
-                       : obstacle.normal(entry.second),
-                     measures.local_element(dim * entry.first),
-                     constraints,
-                     obstacle,
-                     ignore_prescribed_penetration);
+            ContactNode<dim> node;
+            node.node     = entry.first;
+            node.point    = entry.second;
+            node.measure  = measures.local_element(dim * entry.first);
+            node.frame[0] = scene.contact_normal() == ContactNormal::body
+              ? normal / normal.norm()
+              : scene.obstacle().normal(entry.second);
+            add_node(node, constraints, scene);
           }
     });
   }
 
 
 
+  // The node has its number, point, measure and normal; here it gets the rest,
+  // or is left out.
   template <int dim>
   void
-  ContactBoundary<dim>::add_node(const unsigned int           node,
-                                 const Point<dim>            &point,
-                                 Tensor<1, dim>               normal,
-                                 const double                 measure,
+  ContactBoundary<dim>::add_node(ContactNode<dim>             node,
                                  const NodalConstraints<dim> &constraints,
-                                 const Obstacle<dim>         &obstacle,
-                                 const bool ignore_prescribed_penetration)
+                                 const Scene<dim>            &scene)
   {
+    Tensor<1, dim> normal = node.normal();
     // What rounding adds to the normal in a direction in which the node is
     // held would keep the prescribed value from being read back exactly,
     // and a node that is held at zero there from sticking.
     for (unsigned int d = 0; d < dim; ++d)
-      if (constraints.is_prescribed(node, d) && std::abs(normal[d]) < 1e-8)
+      if (constraints.is_prescribed(node.node, d) && std::abs(normal[d]) < 1e-8)
         normal[d] = 0.;
-    const double gap = obstacle.gap(point, normal);
+    const double gap = scene.obstacle().gap(node.point, normal);
     if (!std::isfinite(gap))
       return;
 
     Tensor<1, dim>              prescribed_value;
     std::vector<Tensor<1, dim>> prescribed_tangents;
     for (unsigned int d = 0; d < dim; ++d)
-      if (constraints.is_prescribed(node, d))
+      if (constraints.is_prescribed(node.node, d))
         {
           prescribed_value[d] =
-            constraints.prescribed_values().local_element(dim * node + d);
+            constraints.prescribed_values().local_element(dim * node.node + d);
           Tensor<1, dim> e;
           e[d] = 1.;
           prescribed_tangents.push_back(e);
         }
 
-    if (constraints.is_fixed(node))
+    if (constraints.is_fixed(node.node))
       {
-        if (!ignore_prescribed_penetration &&
+        if (!scene.ignores_prescribed_penetration() &&
             prescribed_value * normal - gap >
               1e-8 * (std::abs(gap) + prescribed_value.norm()))
           throw InputError(
-            "the prescribed displacement of the node at " + describe(point) +
+            "the prescribed displacement of the node at " + describe(node.point) +
             ", which also lies on the contact boundary, pushes it into the "
             "obstacle by " +
             std::to_string(prescribed_value * normal - gap) +
@@ -229,19 +224,16 @@ namespace Friction
     for (const auto &e : prescribed_tangents)
       if (std::abs(e * normal) > 1e-8)
         throw InputError(
-          "At " + describe(point) +
+          "At " + describe(node.point) +
           " on the contact boundary a displacement component is prescribed "
           "that has a part in normal direction, so that it competes with "
           "contact: prescribe all components there, or only tangential "
           "ones.");
 
-    nodes.push_back(
-      {node,
-       point,
-       make_frame<dim>(normal, prescribed_tangents),
-       gap,
-       measure,
-       static_cast<unsigned int>(dim - 1 - prescribed_tangents.size())});
+    node.frame           = make_frame<dim>(normal, prescribed_tangents);
+    node.gap             = gap;
+    node.n_free_tangents = dim - 1 - prescribed_tangents.size();
+    nodes.push_back(node);
   }
 
 

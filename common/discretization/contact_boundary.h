@@ -2,8 +2,7 @@
 #define friction_discretization_contact_boundary_h
 
 #include <common/nodes/nodal_constraints.h>
-#include <common/scene/obstacle.h>
-#include <common/parameters/parameters.h>
+#include <common/scene/scene.h>
 
 #include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
@@ -65,8 +64,9 @@ namespace Friction
   public:
     /**
      * Collective; errors are thrown on all processes.
-     * @param ignore_prescribed_penetration  leave out nodes that are prescribed
-     *         to penetrate the obstacle, instead of throwing.
+     * @param hanging  hanging nodes.
+     * @param scene    says which part of the boundary it is, and what it may
+     *                 touch.
      * @throws InputError if a node is prescribed to penetrate the obstacle, or
      *         if a prescribed component at a contact node has a part in normal
      *         direction, so that contact and prescribed value would compete.
@@ -75,10 +75,7 @@ namespace Friction
                     const DoFHandler<dim>           &dof_handler,
                     const AffineConstraints<double> &hanging,
                     const NodalConstraints<dim>     &constraints,
-                    const types::boundary_id         boundary_id,
-                    const Obstacle<dim>             &obstacle,
-                    const ContactNormal              contact_normal,
-                    const bool ignore_prescribed_penetration = false);
+                    const Scene<dim>                &scene);
 
     unsigned int
     size() const
@@ -107,13 +104,9 @@ namespace Friction
   private:
     std::vector<ContactNode<dim>> nodes;
 
-    void add_node(const unsigned int           node,
-                  const Point<dim>            &point,
-                  Tensor<1, dim>               normal,
-                  const double                 measure,
+    void add_node(ContactNode<dim>             node,
                   const NodalConstraints<dim> &constraints,
-                  const Obstacle<dim>         &obstacle,
-                  const bool                   ignore_prescribed_penetration);
+                  const Scene<dim>            &scene);
   };
 
 
@@ -127,24 +120,6 @@ namespace Friction
     for (unsigned int d = 0; d < dim; ++d)
       sum += p.normal()[d] * v.local_element(dim * p.node + d);
     return sum;
-  }
-
-  /**
-   * The force of the obstacle on the body at a contact node, from the residual
-   * f - A u. In a direction in which the displacement is prescribed the
-   * residual is the reaction of whatever holds the node there, and no contact
-   * force.
-   */
-  template <int dim>
-  Tensor<1, dim>
-  contact_force(const ContactNode<dim> &p, const VectorType &residual)
-  {
-    Tensor<1, dim> force;
-    for (unsigned int e = 0; e <= p.n_free_tangents; ++e)
-      for (unsigned int d = 0; d < dim; ++d)
-        force -=
-          p.frame[e][d] * residual.local_element(dim * p.node + d) * p.frame[e];
-    return force;
   }
 
   /** The tangential components of the value at a contact node, in its frame. */

@@ -2,22 +2,24 @@
 #define friction_discretization_discrete_problem_h
 
 #include <common/discretization/contact_boundary.h>
+#include <common/nodes/leaf_operator.h>
 #include <common/nodes/nodal_constraints.h>
-#include <common/nodes/node_block_matrix.h>
 #include <common/parameters/solver_settings.h>
 
 namespace Friction
 {
   /**
-   * The discrete contact problem on the leaf mesh, as every part of a solver
-   * sees it: references only, to objects that must outlive it.
+   * The discrete contact problem on the leaf mesh, as the parts of a solver see
+   * it: references to what a Discretization has set up, and the law of
+   * friction. Parts keep a reference to it in turn, so that all of them follow
+   * when the coefficient of friction is changed.
    */
   template <int dim>
   struct DiscreteProblem
   {
-    /// Stiffness, hanging nodes condensed, rows of prescribed components
-    /// included: A u - f is then the nodal force of any kind, at any node.
-    const NodeBlockMatrix<dim> &matrix;
+    /// Hanging nodes are condensed, rows of prescribed components included:
+    /// A u - f is then the nodal force of any kind, at any node.
+    const LeafOperator<dim> &stiffness;
 
     /// Nodal forces of body forces and tractions, condensed likewise.
     const VectorType &forces;
@@ -42,6 +44,13 @@ namespace Friction
     has_friction() const
     {
       return friction_law != FrictionLaw::none && friction_coefficient > 0.;
+    }
+
+    /// Whether normal forces in the friction bounds are those of the solution.
+    bool
+    has_coulomb_friction() const
+    {
+      return has_friction() && friction_law == FrictionLaw::coulomb;
     }
 
     /// The coefficient that the parts of the solver reckon with.

@@ -1,6 +1,5 @@
 #include <common/compatibility.h>
 #include <common/discretization/discretization.h>
-#include <common/discretization/volumetric_strain.h>
 #include <common/discretization/leaf_matrix.h>
 #include <common/discretization/node_numbering.h>
 
@@ -17,7 +16,6 @@
 
 #include <deal.II/numerics/vector_tools.h>
 
-#include <algorithm>
 #include <vector>
 
 namespace Friction
@@ -34,66 +32,182 @@ namespace Friction
 
 
 
+  // The element is fixed to Q1, and this is not for convenience: that a
+  // correction stays admissible on finer levels needs interpolation weights
+  // between zero and one, which higher degrees do not have.
   template <int dim>
   Discretization<dim>::Discretization(const Scene<dim>         &scene,
-                                      const Triangulation<dim> &mesh,
-                                      const Stiffening         &stiffening)
-    : dof_handler(mesh)
-    , mapping(1)
+                                      const Triangulation<dim> &mesh)
+    : the_scene(scene)
+    , mesh(mesh)
+    , the_mapping(1)
     , fe(FE_Q<dim>(1), dim)
-  {
-    dof_handler.distribute_dofs(fe);
-    dof_handler.distribute_mg_dofs();
-    renumber_nodes(dof_handler);
-    const IndexSet relevant =
-      DoFTools::extract_locally_relevant_dofs(dof_handler);
+    , dofs(mesh)
+  {}
 
-    hanging = Compatibility::make_constraints(dof_handler.locally_owned_dofs(),
-                                              relevant);
-    DoFTools::make_hanging_node_constraints(dof_handler, hanging);
+
+
+  // distribute_dofs() numbers the degrees of freedom of the leaf mesh,
+  // distribute_mg_dofs() those of each level. With FESystem(FE_Q(1), dim) those
+  // of a vertex get consecutive numbers in either case, and that is all that is
+  // needed to speak of nodes. renumber_nodes() then makes nodes that are
+  // neighbours neighbours in memory, too.
+  template <int dim>
+  void
+  Discretization<dim>::set_up()
+  {
+    dofs.distribute_dofs(fe);
+    dofs.distribute_mg_dofs();
+    renumber_nodes(dofs);
+    find_constraints();
+    contact_boundary = std::make_unique<ContactBoundary<dim>>(
+      the_mapping, dofs, hanging, *nodal_constraints, the_scene);
+  }
+
+
+
+  template <int dim>
+  void
+  Discretization<dim>::find_constraints()
+  {
+    const IndexSet &owned    = dofs.locally_owned_dofs();
+    const IndexSet  relevant = DoFTools::extract_locally_relevant_dofs(dofs);
+    hanging                  = Compatibility::make_constraints(owned, relevant);
+    DoFTools::make_hanging_node_constraints(dofs, hanging);
     hanging.close();
-    AffineConstraints<double> dirichlet = Compatibility::make_constraints(
-      dof_handler.locally_owned_dofs(), relevant);
-    for (const auto &condition : scene.dirichlet_conditions())
-      VectorTools::interpolate_boundary_values(mapping,
-                                               dof_handler,
+
+    // Prescribed displacements are collected by an object of the same class,
+    // because interpolate_boundary_values() wants one; it is never used for
+    // eliminating anything.
+    AffineConstraints<double> prescribed =
+      Compatibility::make_constraints(owned, relevant);
+    for (const auto &condition : the_scene.dirichlet_conditions())
+      VectorTools::interpolate_boundary_values(the_mapping,
+                                               dofs,
                                                condition.boundary_id,
                                                *condition.displacement,
-                                               dirichlet,
+                                               prescribed,
                                                condition.components);
-    for (const auto &pinned : scene.pinned_points())
-      for (const auto &cell : dof_handler.active_cell_iterators())
+
+    // Single vertices may be pinned, to keep a body that is only pushed from
+    // drifting away: contact can hold it from one side only, and friction does
+    // so only where it sticks. Where a boundary condition prescribes the same
+    // component already, it takes precedence.
+    for (const auto &pinned : the_scene.pinned_points())
+      for (const auto &cell : dofs.active_cell_iterators())
         if (!cell->is_artificial())
           for (const unsigned int v : cell->vertex_indices())
             if (cell->vertex(v).distance(pinned.point) <
                 1e-8 * cell->diameter())
               {
                 const auto dof = cell->vertex_dof_index(v, pinned.component);
-                if (!dirichlet.is_constrained(dof))
+                if (!prescribed.is_constrained(dof))
                   {
-                    dirichlet.add_line(dof);
-                    dirichlet.set_inhomogeneity(dof, pinned.value);
+                    prescribed.add_line(dof);
+                    prescribed.set_inhomogeneity(dof, pinned.value);
                   }
               }
-    dirichlet.close();
+    prescribed.close();
 
-    make_stiffness_pattern(dof_handler, hanging, pattern);
-    constraints = std::make_unique<NodalConstraints<dim>>(
-      dof_handler, hanging, dirichlet, coupled_dofs(dof_handler, pattern));
-    assemble(scene, stiffening);
-    contact = std::make_unique<ContactBoundary<dim>>(
-      mapping,
-      dof_handler,
-      hanging,
-      *constraints,
-      scene.contact_boundary_id(),
-      scene.obstacle(),
-      scene.contact_normal(),
-      scene.ignores_prescribed_penetration());
-    hierarchy =
-      std::make_unique<LevelHierarchy<dim>>(dof_handler, *constraints, matrix);
-    friction_law         = scene.friction_law();
-    friction_coefficient = scene.friction_coefficient();
+    // The sparsity pattern knows about hanging nodes but not about prescribed
+    // displacements, whose rows and columns are kept. It comes before there is
+    // a matrix, because with several processes it says whose displacements a
+    // process has to know: all that the rows of its nodes couple to. Usually
+    // these are the nodes of its own cells and of their neighbours, the locally
+    // relevant ones of step-40. But a row to which a hanging node has been
+    // condensed reaches all cells around that node, and one of them may be
+    // farther away.
+    make_stiffness_pattern(dofs, hanging, pattern);
+    nodal_constraints = std::make_unique<NodalConstraints<dim>>(
+      dofs, hanging, prescribed, coupled_dofs(dofs, pattern));
+  }
+
+
+
+  template <int dim>
+  void
+  Discretization<dim>::assemble(const CellForm<dim> &bilinear_form)
+  {
+    TrilinosWrappers::SparseMatrix matrix;
+    matrix.reinit(dofs.locally_owned_dofs(),
+                  dofs.locally_owned_dofs(),
+                  pattern,
+                  Compatibility::mpi_communicator(dofs));
+    forces.reinit(nodal_constraints->partitioner());
+
+    // For the stiffness, two quadrature points per direction are enough. Given
+    // tractions are arbitrary expressions from a scene file and get some more.
+    const QGauss<dim>     quadrature(fe.degree + 1);
+    const QGauss<dim - 1> face_quadrature(fe.degree + 3);
+    FEValues<dim>         fe_values(the_mapping,
+                            fe,
+                            quadrature,
+                            update_values | update_gradients |
+                              update_quadrature_points | update_JxW_values);
+    FEFaceValues<dim>     face_values(the_mapping,
+                                  fe,
+                                  face_quadrature,
+                                  update_values | update_quadrature_points |
+                                    update_JxW_values);
+
+    const unsigned int                   dofs_per_cell = fe.n_dofs_per_cell();
+    FullMatrix<double>                   cell_matrix(dofs_per_cell);
+    Vector<double>                       cell_forces(dofs_per_cell), load(dim);
+    std::vector<types::global_dof_index> indices(dofs_per_cell);
+    std::vector<unsigned int>            component(dofs_per_cell);
+    for (unsigned int i = 0; i < dofs_per_cell; ++i)
+      component[i] = fe.system_to_component_index(i).first;
+
+    // The integral of a load over a cell or a face.
+    const auto add_load = [&](const Function<dim>       &function,
+                              const FEValuesBase<dim> &values) {
+      for (const unsigned int q : values.quadrature_point_indices())
+        {
+          function.vector_value(values.quadrature_point(q), load);
+          for (unsigned int i = 0; i < dofs_per_cell; ++i)
+            cell_forces(i) +=
+              load[component[i]] * values.shape_value(i, q) * values.JxW(q);
+        }
+    };
+
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          cell_matrix = 0.;
+          cell_forces = 0.;
+          fe_values.reinit(cell);
+          bilinear_form(fe_values, cell_matrix);
+          if (the_scene.body_force() != nullptr)
+            add_load(*the_scene.body_force(), fe_values);
+
+          // What the obstacle exerts is not among the loads. It is a reaction,
+          // and will be found in Au - f.
+          for (const unsigned int f : cell->face_indices())
+            if (cell->face(f)->at_boundary())
+              for (const auto &condition : the_scene.traction_conditions())
+                if (cell->face(f)->boundary_id() == condition.boundary_id)
+                  {
+                    face_values.reinit(cell, f);
+                    add_load(*condition.traction, face_values);
+                  }
+
+          // Hanging nodes are condensed in the matrix and in the loads alike.
+          // If prescribed displacements were passed on as well, as in step-40,
+          // their rows would now be gone, and with them the reactions at the
+          // nodes that are held.
+          cell->get_dof_indices(indices);
+          hanging.distribute_local_to_global(
+            cell_matrix, cell_forces, indices, matrix, forces);
+        }
+    matrix.compress(VectorOperation::add);
+    forces.compress(VectorOperation::add);
+
+    // Trilinos has gathered the contributions of all processes, and has done
+    // its part.
+    leaf_operator = LeafOperator<dim>(
+      make_node_block_matrix<dim>(matrix, pattern, *nodal_constraints),
+      *nodal_constraints);
+    pattern.reinit(0, 0);
   }
 
 
@@ -102,152 +216,24 @@ namespace Friction
   DiscreteProblem<dim>
   Discretization<dim>::problem() const
   {
-    return {matrix,
+    return {leaf_operator,
             forces,
-            *constraints,
-            *contact,
-            friction_law,
-            friction_coefficient};
-  }
-
-
-
-  template <int dim>
-  VectorType
-  Discretization<dim>::admissible_start() const
-  {
-    VectorType u(constraints->partitioner());
-    constraints->impose(u);
-    for (const ContactNode<dim> &node : *contact)
-      {
-        const double excess = normal_component(node, u) - node.gap;
-        if (excess > 0)
-          for (unsigned int d = 0; d < dim; ++d)
-            u.local_element(dim * node.node + d) -= excess * node.normal()[d];
-      }
-    return u;
-  }
-
-
-
-  template <int dim>
-  ContactState
-  Discretization<dim>::no_friction_yet() const
-  {
-    return ContactState(contact->size(), problem().has_friction());
+            *nodal_constraints,
+            *contact_boundary,
+            the_scene.friction_law(),
+            the_scene.friction_law() == FrictionLaw::tresca ?
+              1. :
+              the_scene.friction_coefficient()};
   }
 
 
 
   template <int dim>
   void
-  Discretization<dim>::assemble(const Scene<dim> &scene,
-                                const Stiffening &stiffening)
+  Discretization<dim>::interpolate_hanging_nodes(VectorType &v) const
   {
-    TrilinosWrappers::SparseMatrix stiffness;
-    stiffness.reinit(dof_handler.locally_owned_dofs(),
-                     dof_handler.locally_owned_dofs(),
-                     pattern,
-                     Compatibility::mpi_communicator(dof_handler));
-    forces.reinit(constraints->partitioner());
-
-    const QGauss<dim>                    quadrature(2);
-    const QGauss<dim - 1>                face_quadrature(4);
-    FEValues<dim>                        fe_values(mapping,
-                            fe,
-                            quadrature,
-                            update_gradients | update_values |
-                              update_quadrature_points | update_JxW_values);
-    FEFaceValues<dim>                    face_values(mapping,
-                                  fe,
-                                  face_quadrature,
-                                  update_values | update_quadrature_points |
-                                    update_JxW_values);
-    const unsigned int                   n_dofs = fe.n_dofs_per_cell();
-    FullMatrix<double>                   cell_matrix(n_dofs, n_dofs);
-    Vector<double>                       cell_rhs(n_dofs), value(dim);
-    Table<2, double>                     theta;
-    std::vector<types::global_dof_index> indices(n_dofs);
-
-    // A shape function at a quadrature point.
-    struct Shape
-    {
-      unsigned int   component;
-      Tensor<1, dim> gradient;
-      double         theta;
-    };
-    std::vector<Shape> shapes(n_dofs);
-    for (unsigned int i = 0; i < n_dofs; ++i)
-      shapes[i].component = fe.system_to_component_index(i).first;
-    std::vector<double> sums(n_dofs * n_dofs);
-
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          std::fill(sums.begin(), sums.end(), 0.);
-          cell_rhs = 0.;
-          fe_values.reinit(cell);
-          const double factor = stiffening ? stiffening(cell->center()) : 1.;
-          const double lambda = factor * scene.material().lambda();
-          const double mu     = factor * scene.material().mu();
-          shape_volumetric_strains(fe_values, scene.material(), theta);
-          for (const unsigned int q : fe_values.quadrature_point_indices())
-            {
-              // What belongs to one shape function is asked for once, and not
-              // for each pair.
-              for (unsigned int i = 0; i < n_dofs; ++i)
-                {
-                  shapes[i].gradient = fe_values.shape_grad(i, q);
-                  shapes[i].theta    = theta(i, q);
-                }
-              const double JxW   = fe_values.JxW(q);
-              double      *entry = sums.data();
-              for (const Shape &i : shapes)
-                for (const Shape &j : shapes)
-                  *entry++ +=
-                    (lambda * i.theta * j.theta +
-                     mu * i.gradient[j.component] * j.gradient[i.component] +
-                     (i.component == j.component
-                        ? mu * (i.gradient * j.gradient)
-                        : 0.)) *
-                    JxW;
-              if (scene.body_force() != nullptr)
-                {
-                  scene.body_force()->vector_value(
-                    fe_values.quadrature_point(q), value);
-                  for (unsigned int i = 0; i < n_dofs; ++i)
-                    cell_rhs(i) +=
-                      value[fe.system_to_component_index(i).first] *
-                      fe_values.shape_value(i, q) * fe_values.JxW(q);
-                }
-            }
-          for (unsigned int i = 0; i < n_dofs; ++i)
-            for (unsigned int j = 0; j < n_dofs; ++j)
-              cell_matrix(i, j) = sums[i * n_dofs + j];
-          for (const unsigned int f : cell->face_indices())
-            if (cell->face(f)->at_boundary())
-              for (const auto &condition : scene.traction_conditions())
-                if (condition.boundary_id == cell->face(f)->boundary_id())
-                  {
-                    face_values.reinit(cell, f);
-                    for (const unsigned int q :
-                         face_values.quadrature_point_indices())
-                      {
-                        condition.traction->vector_value(
-                          face_values.quadrature_point(q), value);
-                        for (unsigned int i = 0; i < n_dofs; ++i)
-                          cell_rhs(i) +=
-                            value[fe.system_to_component_index(i).first] *
-                            face_values.shape_value(i, q) * face_values.JxW(q);
-                      }
-                  }
-          cell->get_dof_indices(indices);
-          hanging.distribute_local_to_global(
-            cell_matrix, cell_rhs, indices, stiffness, forces);
-        }
-    stiffness.compress(VectorOperation::add);
-    forces.compress(VectorOperation::add);
-    matrix = make_node_block_matrix<dim>(stiffness, pattern, *constraints);
+    hanging.distribute(v);
+    v.update_ghost_values();
   }
 
 

@@ -2,11 +2,11 @@
 #define friction_discretization_discretization_h
 
 #include <common/discretization/contact_boundary.h>
-#include <common/contact/contact_state.h>
-#include <common/nodes/nodal_constraints.h>
-#include <common/levels/level_hierarchy.h>
-#include <common/scene/scene.h>
 #include <common/discretization/discrete_problem.h>
+#include <common/discretization/elasticity.h>
+#include <common/nodes/leaf_operator.h>
+#include <common/nodes/nodal_constraints.h>
+#include <common/scene/scene.h>
 
 #include <deal.II/distributed/tria.h>
 
@@ -15,9 +15,9 @@
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/mapping_q.h>
 
+#include <deal.II/lac/affine_constraints.h>
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 
-#include <functional>
 #include <memory>
 
 namespace Friction
@@ -36,61 +36,134 @@ namespace Friction
 
 
   /**
-   * A scene discretised on a given mesh by bilinear or trilinear elements:
-   * degrees of freedom with their levels, constraints, the contact boundary,
-   * the assembled stiffness matrix and forces, and the hierarchy of levels. A
-   * solver takes hierarchy and problem():
+   * The discrete problem on a mesh: a scene discretised by bilinear or
+   * trilinear elements. It holds
+   * - the degrees of freedom of the leaf mesh and of all levels, numbered node
+   *   by node,
+   * - hanging nodes as constraints of deal.II, which are condensed,
+   * - what else is known about single nodes before any contact,
+   *   NodalConstraints, prescribed components among it, whose rows stay in the
+   *   matrix,
+   * - the nodes that may get into contact, ContactBoundary,
+   * - stiffness and loads, assembled.
    *
+   * Solvers see of it what problem() refers to:
    * @code
    *   Discretization<dim> discretization(scene, mesh);
-   *   VectorType          u     = discretization.admissible_start();
-   *   ContactState        state = discretization.no_friction_yet();
-   *   CoulombSolver<dim>  solver(*discretization.hierarchy,
-   *                             discretization.problem(),
-   *                             settings);
-   *   solver.solve(u, state);
+   *   discretization.set_up();
+   *   discretization.assemble(elasticity<dim>(scene.material()));
+   *
+   *   VectorType         u(discretization.constraints().partitioner());
+   *   VectorType         no_tractions(u);
+   *   ContactState       state = make_initial_guess(discretization, u,
+   *                                                 no_tractions);
+   *   ContactSolver<dim> solver(discretization, settings);
+   *   SolverReport       report = solver.solve(u, state);
    * @endcode
    *
-   * The mesh must outlive the object and must not be refined as long as the
-   * object is used. All members are collective where the mesh is distributed.
+   * Scene and mesh must outlive the object. After the mesh has been refined,
+   * set_up() and assemble() make everything anew; see also refine_mesh(). All
+   * functions are collective where the mesh is distributed.
    */
   template <int dim>
   class Discretization
   {
   public:
-    /** By how many times the material is stiffer at a point than the scene
-     * says, the same in all of a cell: that of its middle. */
-    using Stiffening = std::function<double(const Point<dim> &)>;
+    /** Nothing is set up yet: the mesh may still be empty. */
+    Discretization(const Scene<dim> &scene, const Triangulation<dim> &mesh);
 
-    Discretization(const Scene<dim>         &scene,
-                   const Triangulation<dim> &mesh,
-                   const Stiffening         &stiffening = {});
+    /** Distributes degrees of freedom on the present mesh, and finds
+     * constraints and the contact boundary. */
+    void set_up();
 
-    /** What solvers take: references to this object. */
+    /** Assembles stiffness and loads.
+     * @param bilinear_form  whose matrix has to be symmetric and positive
+     *                       definite on the displacements that are prescribed
+     *                       to be zero where something is prescribed. */
+    void assemble(const CellForm<dim> &bilinear_form);
+
+    const Scene<dim> &
+    scene() const
+    {
+      return the_scene;
+    }
+
+    const DoFHandler<dim> &
+    dof_handler() const
+    {
+      return dofs;
+    }
+
+    /** Vertices are where the mesh has them, cells are (bi-, tri-)linear. */
+    const Mapping<dim> &
+    mapping() const
+    {
+      return the_mapping;
+    }
+
+    /** Interpolation at hanging nodes, and nothing else. */
+    const AffineConstraints<double> &
+    hanging_nodes() const
+    {
+      return hanging;
+    }
+
+    const NodalConstraints<dim> &
+    constraints() const
+    {
+      return *nodal_constraints;
+    }
+
+    const ContactBoundary<dim> &
+    contact() const
+    {
+      return *contact_boundary;
+    }
+
+    const LeafOperator<dim> &
+    stiffness() const
+    {
+      return leaf_operator;
+    }
+
+    /** Nodal forces of body forces and given tractions. */
+    const VectorType &
+    loads() const
+    {
+      return forces;
+    }
+
+    /** What solvers take: references to this object, and the law of friction.
+     * With Tresca's law the coefficient is 1, since what the scene gives is the
+     * bound itself. */
     DiscreteProblem<dim> problem() const;
 
-    /** Zero, but for prescribed values, and moved out of the obstacle. */
-    VectorType admissible_start() const;
+    /** A vector of zeros on the leaf mesh. */
+    VectorType
+    vector() const
+    {
+      return VectorType(nodal_constraints->partitioner());
+    }
 
-    /** A state of contact without normal forces, to start from. */
-    ContactState no_friction_yet() const;
-
-    DoFHandler<dim>                        dof_handler;
-    MappingQ<dim>                          mapping;
-    FESystem<dim>                          fe;
-    AffineConstraints<double>              hanging;
-    std::unique_ptr<NodalConstraints<dim>> constraints;
-    NodeBlockMatrix<dim>                   matrix;
-    VectorType                             forces;
-    std::unique_ptr<ContactBoundary<dim>>  contact;
-    std::unique_ptr<LevelHierarchy<dim>>   hierarchy;
-    FrictionLaw                            friction_law;
-    double                                 friction_coefficient;
+    /** Gives hanging nodes of @p v their values, and brings all ghosts that
+     * deal.II knows up to date. */
+    void interpolate_hanging_nodes(VectorType &v) const;
 
   private:
-    void assemble(const Scene<dim> &scene, const Stiffening &stiffening);
+    const Scene<dim>         &the_scene;
+    const Triangulation<dim> &mesh;
+    const MappingQ<dim>       the_mapping;
+    const FESystem<dim>       fe;
+    DoFHandler<dim>           dofs;
+    AffineConstraints<double> hanging;
+    DynamicSparsityPattern    pattern;
+    LeafOperator<dim>         leaf_operator;
+    VectorType                forces;
 
-    DynamicSparsityPattern pattern;
+    std::unique_ptr<NodalConstraints<dim>> nodal_constraints;
+    std::unique_ptr<ContactBoundary<dim>>  contact_boundary;
+
+    void find_constraints();
   };
 } // namespace Friction
 

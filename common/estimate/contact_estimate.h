@@ -1,12 +1,8 @@
 #ifndef friction_estimate_contact_estimate_h
 #define friction_estimate_contact_estimate_h
 
-#include <common/discretization/contact_boundary.h>
-#include <common/contact/contact_state.h>
+#include <common/discretization/discretization.h>
 #include <common/estimate/residual_estimator.h>
-#include <common/scene/scene.h>
-
-#include <deal.II/lac/affine_constraints.h>
 
 namespace Friction
 {
@@ -27,24 +23,9 @@ namespace Friction
    */
   template <int dim>
   ErrorEstimate
-  estimate_contact_error(const Scene<dim>                &scene,
-                         const Mapping<dim>              &mapping,
-                         const DoFHandler<dim>           &dof_handler,
-                         const AffineConstraints<double> &hanging,
-                         const NodalConstraints<dim>     &constraints,
-                         const ContactBoundary<dim>      &contact_boundary,
-                         const VectorType                &displacement,
-                         const VectorType                &tractions);
-
-  /**
-   * Sets the refinement flag of every cell at the boundary that has a vertex in
-   * contact. Returns whether there is one.
-   */
-  template <int dim>
-  bool mark_contact_zone(const DoFHandler<dim>       &dof_handler,
-                         const NodalConstraints<dim> &constraints,
-                         const ContactBoundary<dim>  &contact_boundary,
-                         const ContactState          &state);
+  estimate_contact_error(const Discretization<dim> &discretization,
+                         const VectorType          &displacement,
+                         const VectorType          &tractions);
 } // namespace Friction
 
 #endif

@@ -129,4 +129,41 @@ namespace Friction
   template unsigned int mark_bulk<3>(parallel::distributed::Triangulation<3> &,
                                      const Vector<float> &,
                                      const double);
+
+
+
+  template <int dim>
+  bool
+  mark_contact_zone(const Discretization<dim> &discretization,
+                    const ContactState        &state)
+  {
+    // Each process knows what its own nodes do, but its cells have vertices
+    // that belong to others.
+    const ContactBoundary<dim> &contact = discretization.contact();
+    VectorType                  touches(discretization.vector());
+    for (unsigned int p = 0; p < contact.size(); ++p)
+      touches.local_element(dim * contact[p].node) =
+        state.in_contact(p) ? 1. : 0.;
+    touches.update_ghost_values();
+
+    bool any_marked = false;
+    for (const auto &cell : discretization.dof_handler().active_cell_iterators())
+      if (cell->is_locally_owned() && cell->at_boundary())
+        for (const unsigned int v : cell->vertex_indices())
+          if (touches(cell->vertex_dof_index(v, 0)) > 0.)
+            {
+              cell->set_refine_flag();
+              any_marked = true;
+            }
+    return Utilities::MPI::max(any_marked ? 1 : 0,
+                               discretization.constraints().communicator()) >
+      0;
+  }
+
+
+
+  template bool mark_contact_zone(const Discretization<2> &,
+                                  const ContactState &);
+  template bool mark_contact_zone(const Discretization<3> &,
+                                  const ContactState &);
 } // namespace Friction

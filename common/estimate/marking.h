@@ -1,6 +1,9 @@
 #ifndef friction_estimate_marking_h
 #define friction_estimate_marking_h
 
+#include <common/contact/contact_state.h>
+#include <common/discretization/discretization.h>
+
 #include <deal.II/distributed/tria.h>
 
 #include <deal.II/lac/vector.h>
@@ -35,6 +38,14 @@ namespace Friction
   mark_bulk(dealii::parallel::distributed::Triangulation<dim> &triangulation,
             const dealii::Vector<float>                       &cell_errors,
             const double                                       theta);
+
+  /**
+   * Sets the refinement flag of every cell at the boundary that has a vertex in
+   * contact. Returns whether there is one on any process.
+   */
+  template <int dim>
+  bool mark_contact_zone(const Discretization<dim> &discretization,
+                         const ContactState        &state);
 } // namespace Friction
 
 #endif

@@ -9,17 +9,16 @@ namespace Friction
 {
   template <int dim>
   AlgebraicCorrection<dim>::AlgebraicCorrection(
-    const NodeBlockMatrix<dim>  &leaf_matrix,
-    const NodalConstraints<dim> &constraints,
-    const CoarsestMethod         method)
-    : leaf_matrix(leaf_matrix)
-    , constraints(constraints)
-    , current(constraints)
+    const DiscreteProblem<dim> &problem,
+    const CoarsestMethod        method)
+    : problem(problem)
+    , current(problem.constraints)
     , solver(method, dim)
   {
-    const auto    &partitioner = *constraints.partitioner();
-    const IndexSet owned       = partitioner.locally_owned_range();
-    const MPI_Comm comm        = constraints.communicator();
+    const NodeBlockMatrix<dim> &leaf_matrix = problem.stiffness.blocks();
+    const auto                 &partitioner = *problem.constraints.partitioner();
+    const IndexSet              owned = partitioner.locally_owned_range();
+    const MPI_Comm              comm  = problem.communicator();
     rhs.reinit(owned, comm);
     solution.reinit(rhs);
 
@@ -52,17 +51,20 @@ namespace Friction
 
 
   template <int dim>
-  void
-  AlgebraicCorrection<dim>::update(const Truncation<dim> &truncation)
+  std::size_t
+  AlgebraicCorrection<dim>::update(const Linearization<dim> &linearization,
+                                   const Iterate &)
   {
-    bool changed = !is_filled;
+    const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
+    const Truncation<dim> &truncation = linearization.truncation();
+    bool                   changed    = !is_filled;
     for (const unsigned int node : truncation.special_nodes())
       changed = changed || !current.agrees(truncation, node);
-    if (true_on_any_process(changed, constraints.communicator()))
-      {
-        current = truncation;
-        fill();
-      }
+    if (!true_on_any_process(changed, problem.communicator()))
+      return 0;
+    current = truncation;
+    fill();
+    return problem.stiffness.blocks().n_rows();
   }
 
 
@@ -74,7 +76,8 @@ namespace Friction
   void
   AlgebraicCorrection<dim>::fill()
   {
-    const auto &partitioner = *constraints.partitioner();
+    const NodeBlockMatrix<dim> &leaf_matrix = problem.stiffness.blocks();
+    const auto &partitioner = *problem.constraints.partitioner();
     const auto  dof = [&](const unsigned int node, const unsigned int d) {
       return partitioner.local_to_global(dim * node + d);
     };
@@ -112,6 +115,7 @@ namespace Friction
   void
   AlgebraicCorrection<dim>::apply(VectorType &v, const VectorType &r)
   {
+    const PhaseScope phase(problem.communicator(), SolverPhase::coarsest);
     std::copy_n(r.begin(), rhs.locally_owned_size(), rhs.begin());
     solver.solve(solution, rhs);
     std::copy_n(solution.begin(), solution.locally_owned_size(), v.begin());

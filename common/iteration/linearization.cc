@@ -73,34 +73,31 @@ namespace Friction
 
 
   template <int dim>
-  Linearization<dim>::Linearization(const NodeBlockMatrix<dim>  &matrix,
-                                    const NodalConstraints<dim> &constraints,
-                                    const ContactBoundary<dim>  &contact,
-                                    const double friction_coefficient,
-                                    const TruncationVariant variant)
-    : matrix(matrix)
-    , contact(contact)
-    , friction_coefficient(friction_coefficient)
+  Linearization<dim>::Linearization(const DiscreteProblem<dim> &problem,
+                                    const TruncationVariant     variant)
+    : problem(problem)
     , variant(variant)
-    , current(constraints)
+    , current(problem.constraints)
   {
-    find_ghosts(constraints);
+    find_ghosts();
   }
 
 
 
   template <int dim>
   void
-  Linearization<dim>::find_ghosts(const NodalConstraints<dim> &constraints)
+  Linearization<dim>::find_ghosts()
   {
-    const NodeNumbering &leaf = constraints.numbering();
+    const ContactBoundary<dim> &contact = problem.contact;
+    const NodeNumbering        &leaf    = problem.constraints.numbering();
     if (leaf.distribution().n_processes() == 1)
       return;
 
     // Contact nodes have numbers of their own. Which of our ghosts is which of
     // them their owners tell; zero means that it is none.
     NodeNumbering numbering(
-      NodeDistribution(contact.size(), constraints.communicator()));
+      NodeDistribution(contact.size(),
+                       leaf.distribution().shared_communicator()));
     std::vector<double> number(leaf.size(), 0.);
     for (unsigned int p = 0; p < contact.size(); ++p)
       number[contact[p].node] = 1. + numbering.distribution().global(p);
@@ -125,6 +122,7 @@ namespace Friction
   void
   Linearization<dim>::exchange_decisions()
   {
+    const ContactBoundary<dim> &contact = problem.contact;
     if (exchange.is_empty())
       return;
     constexpr unsigned int n = dim * dim;
@@ -151,8 +149,11 @@ namespace Friction
 
   template <int dim>
   void
-  Linearization<dim>::update(const VectorType &u, const ContactState &state)
+  Linearization<dim>::update(const Iterate &x)
   {
+    const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
+    const ContactBoundary<dim> &contact = problem.contact;
+    const ContactState         &state   = x.state;
     for (unsigned int p = 0; p < contact.size(); ++p)
       {
         const ContactNode<dim> &node = contact[p];
@@ -181,10 +182,11 @@ namespace Friction
         if (dim == 3 &&
             variant != TruncationVariant::phases_without_second_order)
           {
-            const double bound = friction_coefficient * state.normal_force(p);
-            const auto   u_T   = tangential_components<dim>(node, u);
+            const double bound =
+              problem.effective_coefficient() * state.normal_force(p);
+            const auto   u_T   = tangential_components<dim>(node, x.u);
             const double stiffness =
-              trace<dim>(matrix.block(matrix.row_begin(node.node))) / dim;
+              trace<dim>(problem.stiffness.diagonal_block(node.node)) / dim;
             if (bound > 0 && !state.sticks(p) && !all_is_held &&
                 norm_of(u_T) > 0)
               curvature = friction_curvature(node, u_T, bound, 1e8 * stiffness);
@@ -202,22 +204,23 @@ namespace Friction
 
   template <int dim>
   void
-  Linearization<dim>::linearize_residual(VectorType         &r,
-                                         const VectorType   &u,
-                                         const ContactState &state) const
+  Linearization<dim>::linearize_residual(VectorType &r, const Iterate &x) const
   {
+    const ContactBoundary<dim> &contact = problem.contact;
+    const ContactState         &state   = x.state;
+    r                                   = x.residual;
     if (state.has_friction())
       for (unsigned int p = 0; p < contact.size(); ++p)
         if (state.normal_force(p) > 0 && !state.sticks(p))
           {
             const ContactNode<dim> &node = contact[p];
-            const auto              u_T  = tangential_components<dim>(node, u);
+            const auto              u_T = tangential_components<dim>(node, x.u);
             const double            norm = norm_of(u_T);
             if (norm > 0)
               for (unsigned int t = 1; t < dim; ++t)
                 for (unsigned int d = 0; d < dim; ++d)
-                  r.local_element(dim * node.node + d) -= friction_coefficient *
-                    state.normal_force(p) * u_T[t - 1] / norm *
+                  r.local_element(dim * node.node + d) -=
+                    problem.effective_coefficient() * state.normal_force(p) * u_T[t - 1] / norm *
                     node.frame[t][d];
           }
     current.apply(r.begin());
@@ -227,11 +230,12 @@ namespace Friction
 
   template <int dim>
   void
-  Linearization<dim>::bounds(VectorType         &lower,
-                             VectorType         &upper,
-                             const VectorType   &u,
-                             const ContactState &state) const
+  Linearization<dim>::bounds(VectorType    &lower,
+                             VectorType    &upper,
+                             const Iterate &x) const
   {
+    const ContactBoundary<dim> &contact = problem.contact;
+    const ContactState         &state   = x.state;
     const double infinity = std::numeric_limits<double>::infinity();
     lower                 = -infinity;
     upper                 = infinity;
@@ -257,12 +261,12 @@ namespace Friction
         };
 
         if (!state.in_contact(p))
-          add(node.normal(), node.gap - normal_component(node, u));
-        if (friction_coefficient * state.normal_force(p) > 0 &&
+          add(node.normal(), node.gap - normal_component(node, x.u));
+        if (problem.effective_coefficient() * state.normal_force(p) > 0 &&
             !state.sticks(p))
           {
             // The displacement keeps a part in the direction of its slip.
-            const auto     u_T  = tangential_components<dim>(node, u);
+            const auto     u_T  = tangential_components<dim>(node, x.u);
             const double   norm = norm_of(u_T);
             Tensor<1, dim> back;
             for (unsigned int t = 1; t < dim; ++t)

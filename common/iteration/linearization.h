@@ -1,9 +1,8 @@
 #ifndef friction_iteration_linearization_h
 #define friction_iteration_linearization_h
 
-#include <common/discretization/contact_boundary.h>
-#include <common/contact/contact_state.h>
-#include <common/nodes/node_block_matrix.h>
+#include <common/discretization/discrete_problem.h>
+#include <common/iteration/iterate.h>
 #include <common/nodes/truncation.h>
 #include <common/parallel/ghost_exchange.h>
 #include <common/parameters/solver_settings.h>
@@ -45,16 +44,13 @@ namespace Friction
   class Linearization
   {
   public:
-    /** @p matrix and @p contact are kept by reference. Collective. */
-    Linearization(const NodeBlockMatrix<dim>  &matrix,
-                  const NodalConstraints<dim> &constraints,
-                  const ContactBoundary<dim>  &contact,
-                  const double                 friction_coefficient,
-                  const TruncationVariant      variant);
+    /** @p problem is kept by reference. Collective. */
+    Linearization(const DiscreteProblem<dim> &problem,
+                  const TruncationVariant     variant);
 
-    /** Determines the phases and, in three dimensions, $\omega''$; and has the
-     * neighbouring processes know them. */
-    void update(const VectorType &u, const ContactState &state);
+    /** Determines the phases of an iterate and, in three dimensions,
+     * $\omega''$; and has the neighbouring processes know them. Collective. */
+    void update(const Iterate &x);
 
     const Truncation<dim> &
     truncation() const
@@ -62,28 +58,23 @@ namespace Friction
       return current;
     }
 
-    /** r := T (r - omega'(u)), from the residual r = f - A u. */
-    void linearize_residual(VectorType         &r,
-                            const VectorType   &u,
-                            const ContactState &state) const;
+    /** The truncated residual of the linearised problem,
+     * r := T (f - A u - omega'(u)). */
+    void linearize_residual(VectorType &r, const Iterate &x) const;
 
     /**
-     * Cartesian bounds within which a correction of @p u is admissible and
+     * Cartesian bounds within which a correction of the iterate is admissible and
      * causes no change of phase, (6.12). A half space $n\cdot v\le b$ is
      * replaced by the largest box of equal sides inside it that contains zero.
      * A sliding node may not move back beyond the line through $u_T=0$ that is
      * perpendicular to its slip; in two dimensions this is to say that $u_T$
      * keeps its sign.
      */
-    void bounds(VectorType         &lower,
-                VectorType         &upper,
-                const VectorType   &u,
-                const ContactState &state) const;
+    void
+    bounds(VectorType &lower, VectorType &upper, const Iterate &x) const;
 
   private:
-    const NodeBlockMatrix<dim> &matrix;
-    const ContactBoundary<dim> &contact;
-    const double                friction_coefficient;
+    const DiscreteProblem<dim> &problem;
     const TruncationVariant     variant;
     Truncation<dim>             current;
 
@@ -94,7 +85,7 @@ namespace Friction
     GhostExchange             exchange;
     std::vector<double>       exchanged;
 
-    void find_ghosts(const NodalConstraints<dim> &constraints);
+    void find_ghosts();
 
     void exchange_decisions();
   };

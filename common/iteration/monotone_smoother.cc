@@ -1,22 +1,21 @@
-#include <common/nodes/interface_damping.h>
+#include <common/contact/contact_forces.h>
 #include <common/iteration/monotone_smoother.h>
+#include <common/nodes/interface_damping.h>
 
 #include <algorithm>
 
 namespace Friction
 {
   template <int dim>
-  MonotoneSmoother<dim>::MonotoneSmoother(
-    const NodeBlockMatrix<dim>  &matrix,
-    const NodalConstraints<dim> &constraints,
-    const ContactBoundary<dim>  &contact,
-    const double                 friction_coefficient,
-    const LocalSolver            local_solver)
-    : matrix(matrix)
-    , contact(contact)
-    , friction_coefficient(friction_coefficient)
-    , inverses(constraints.n_owned_nodes(), zero_block<dim>())
+  MonotoneSmoother<dim>::MonotoneSmoother(const DiscreteProblem<dim> &problem,
+                                          const LocalSolver local_solver)
+    : problem(problem)
+    , inverses(problem.constraints.n_owned_nodes(), zero_block<dim>())
   {
+    const NodeBlockMatrix<dim>  &matrix      = problem.stiffness.blocks();
+    const NodalConstraints<dim> &constraints = problem.constraints;
+    const ContactBoundary<dim>  &contact     = problem.contact;
+
     NodeRanges        ordinary;
     std::vector<char> is_ordinary(constraints.n_owned_nodes());
     for (unsigned int node = 0; node < is_ordinary.size(); ++node)
@@ -68,17 +67,6 @@ namespace Friction
             pseudo_inverse<dim>(block, 1e-10 * trace<dim>(block.data()));
         }
 
-    std::vector<unsigned int> coupled;
-    std::vector<char>         is_coupled(constraints.n_nodes(), 0);
-    for (unsigned int i = 0; i < matrix.n_rows(); ++i)
-      for (std::size_t e = matrix.row_begin(i); e < matrix.row_end(i); ++e)
-        is_coupled[matrix.column(e)] = 1;
-    for (unsigned int i = matrix.n_rows(); i < is_coupled.size(); ++i)
-      if (is_coupled[i])
-        coupled.push_back(i);
-    exchange =
-      std::make_unique<GhostExchange>(constraints.numbering(), coupled);
-
     schedule = SweepSchedule<dim>(matrix, ordinary);
     first_contact.assign(schedule.n_chunks() + 1, 0);
     for (const ContactNode<dim> &p : contact)
@@ -96,51 +84,81 @@ namespace Friction
 
   template <int dim>
   void
-  MonotoneSmoother<dim>::sweeps(VectorType       &u,
-                                const VectorType &f,
-                                ContactState     &state,
-                                const Sweeps     &what,
-                                VectorType       *residual) const
+  MonotoneSmoother<dim>::forward(Iterate           &x,
+                                 const unsigned int n_sweeps,
+                                 const bool trust_first_normal_forces) const
   {
+    sweep(x, n_sweeps, false, trust_first_normal_forces);
+  }
+
+
+
+  template <int dim>
+  void
+  MonotoneSmoother<dim>::backward(Iterate           &x,
+                                  const unsigned int n_sweeps) const
+  {
+    sweep(x, n_sweeps, true, false);
+  }
+
+
+
+  // Whatever comes last, the residual or nothing, is a stage of its own behind
+  // the sweeps.
+  template <int dim>
+  void
+  MonotoneSmoother<dim>::sweep(Iterate           &x,
+                               const unsigned int n_sweeps,
+                               const bool         backwards,
+                               const bool trust_first_normal_forces) const
+  {
+    const PhaseScope phase(problem.communicator(), SolverPhase::leading_sweeps);
+    const NodeBlockMatrix<dim> &matrix = problem.stiffness.blocks();
+    const double               *f      = problem.forces.begin();
+    double                     *u      = x.u.begin();
+    problem.stiffness.update_ghosts(x.u);
+    if (!backwards && x.residual.size() != x.u.size())
+      x.residual.reinit(x.u, true);
+
     const auto relax_ordinary_nodes = [&](const unsigned int chunk) {
       const NodeRanges &nodes = schedule.nodes(chunk);
       for (unsigned int i = 0; i < nodes.size(); ++i)
         relax_nodes<dim>(matrix,
                          inverses,
-                         nodes[what.backwards ? nodes.size() - 1 - i : i],
-                         f.begin(),
-                         u.begin(),
-                         what.backwards);
+                         nodes[backwards ? nodes.size() - 1 - i : i],
+                         f,
+                         u,
+                         backwards);
     };
     const auto relax_contact_nodes = [&](const unsigned int chunk,
                                          const bool         update) {
       const unsigned int begin = first_contact[chunk],
                          end   = first_contact[chunk + 1];
       const auto at            = [&](const unsigned int i) {
-        return by_chunk[what.backwards ? begin + end - 1 - i : i];
+        return by_chunk[backwards ? begin + end - 1 - i : i];
       };
       for (unsigned int i = begin; i < end; ++i)
         {
           if (i + 1 < end)
-            matrix.prefetch(contact[at(i + 1)].node);
-          relax_contact_node(at(i), u, f, state, update);
+            matrix.prefetch(problem.contact[at(i + 1)].node);
+          relax_contact_node(at(i), x, update);
         }
     };
 
     schedule.run(
-      what.n,
-      residual != nullptr,
-      what.backwards,
+      n_sweeps,
+      /*with residual =*/!backwards,
+      backwards,
       [&](const unsigned int stage, const unsigned int chunk) {
-        const bool update = what.update_normal_forces &&
-          (stage > 0 || !what.trust_first_normal_forces);
-        if (stage == what.n)
-          matrix.residual(residual->begin(),
-                          f.begin(),
-                          u.begin(),
+        const bool update = x.updates_normal_forces &&
+          (stage > 0 || !trust_first_normal_forces);
+        if (stage == n_sweeps)
+          matrix.residual(x.residual.begin(),
+                          f,
+                          u,
                           schedule.chunk(chunk).first,
                           schedule.chunk(chunk).second);
-        else if (what.backwards)
+        else if (backwards)
           {
             relax_contact_nodes(chunk, update);
             relax_ordinary_nodes(chunk);
@@ -151,8 +169,12 @@ namespace Friction
             relax_contact_nodes(chunk, update);
           }
       },
-      *exchange,
-      u.begin());
+      problem.stiffness.ghosts(),
+      u);
+
+    // The normal forces of the iterate as it is now, for all that follows.
+    if (x.updates_normal_forces && !backwards)
+      set_normal_forces(problem.contact, x.residual, x.state);
   }
 
 
@@ -161,17 +183,16 @@ namespace Friction
   void
   MonotoneSmoother<dim>::relax_contact_node(
     const unsigned int p,
-    VectorType        &u,
-    const VectorType  &f,
-    ContactState      &state,
-    const bool         update_normal_forces) const
+    Iterate           &x,
+    const bool         update_normal_force) const
   {
-    const ContactNode<dim> &node  = contact[p];
-    double                 *value = u.begin() + dim * node.node;
+    const NodeBlockMatrix<dim> &matrix = problem.stiffness.blocks();
+    const ContactNode<dim>     &node   = problem.contact[p];
+    double                     *value  = x.u.begin() + dim * node.node;
 
     // The force that the other nodes leave, r~ = r + A_pp u_p in (6.18); at an
     // interface to other processes with the damping in A_pp.
-    const NodeValue<dim> product = matrix.row_times(node.node, u.begin());
+    const NodeValue<dim> product = matrix.row_times(node.node, x.u.begin());
     const auto           damped  = damped_diagonals.find(node.node);
     const NodeValue<dim> diagonal =
       times<dim>(damped == damped_diagonals.end()
@@ -182,18 +203,20 @@ namespace Friction
     for (unsigned int d = 0; d < dim; ++d)
       {
         old_value[d] = value[d];
-        residual[d]  = f.local_element(dim * node.node + d) - product[d];
-        force[d]     = residual[d] + diagonal[d];
+        residual[d] =
+          problem.forces.local_element(dim * node.node + d) - product[d];
+        force[d] = residual[d] + diagonal[d];
       }
 
     double bound = 0;
-    if (friction_coefficient > 0)
+    if (problem.has_friction())
       {
-        if (update_normal_forces)
-          state.set_normal_force(
-            p,
-            state.in_contact(p) ? std::max(0., residual * node.normal()) : 0.);
-        bound = friction_coefficient * state.normal_force(p);
+        if (update_normal_force)
+          x.state.set_normal_force(p,
+                                   x.state.in_contact(p)
+                                     ? std::max(0., residual * node.normal())
+                                     : 0.);
+        bound = problem.friction_coefficient * x.state.normal_force(p);
       }
 
     std::array<double, dim>     b;
@@ -206,13 +229,13 @@ namespace Friction
       }
 
     const LocalSolution<dim> z =
-      local_problems[p].solve(b, bound, tangential, state.in_contact(p));
+      local_problems[p].solve(b, bound, tangential, x.state.in_contact(p));
     Tensor<1, dim> new_value = z.normal * node.normal();
     for (unsigned int t = 1; t < dim; ++t)
       new_value += z.tangential[t - 1] * node.frame[t];
     for (unsigned int d = 0; d < dim; ++d)
       value[d] = new_value[d];
-    state.set(p, z.in_contact, z.sticks);
+    x.state.set(p, z.in_contact, z.sticks);
   }
 
 

@@ -1,16 +1,13 @@
 #ifndef friction_iteration_monotone_smoother_h
 #define friction_iteration_monotone_smoother_h
 
-#include <common/discretization/contact_boundary.h>
-#include <common/contact/contact_state.h>
 #include <common/contact/local_problem.h>
-#include <common/nodes/nodal_constraints.h>
+#include <common/discretization/discrete_problem.h>
+#include <common/iteration/iterate.h>
 #include <common/nodes/sweep_schedule.h>
-#include <common/parallel/ghost_exchange.h>
 #include <common/parameters/solver_settings.h>
 
 #include <map>
-#include <memory>
 #include <vector>
 
 namespace Friction
@@ -40,70 +37,31 @@ namespace Friction
   {
   public:
     /**
-     * Collective. Arguments given by reference are kept.
-     * @param friction_coefficient  zero for frictionless contact, for which
-     *        nothing of friction is then computed.
+     * Collective.
+     * @param problem       kept by reference. Without friction nothing of
+     *                      friction is computed.
      * @param local_solver  of the local problems, in three dimensions.
      */
-    MonotoneSmoother(
-      const NodeBlockMatrix<dim>  &matrix,
-      const NodalConstraints<dim> &constraints,
-      const ContactBoundary<dim>  &contact,
-      const double                 friction_coefficient,
+    explicit MonotoneSmoother(
+      const DiscreteProblem<dim> &problem,
       const LocalSolver local_solver = LocalSolver::secular_equation);
 
-    /** What a number of sweeps is to do; see sweeps(). */
-    struct Sweeps
-    {
-      unsigned int n         = 1;
-      bool         backwards = false;
-
-      /// Take the normal force of each node from the intermediate iterate just
-      /// before the node is relaxed: the local problems (6.19) of Algorithm 3.
-      /// Otherwise the normal forces stay as they are, as in (6.13).
-      bool update_normal_forces = false;
-
-      /// With updates: let the first sweep work with the given normal forces.
-      bool trust_first_normal_forces = false;
-    };
-
     /**
-     * Sweeps over all nodes that can move.
-     * @param u      displacement at the leaf nodes; prescribed components must
-     *               have their values, which are not changed. Its ghosts must
-     * be valid (see ghosts()), and are on return.
-     * @param f      nodal forces.
-     * @param state  contact and stick flags, set by the sweeps, and the normal
-     *               forces in the friction bounds.
-     * @param residual  if not null, on return f - A u at all nodes.
+     * Forward sweeps over all nodes that can move, ascending.
+     * @param x  the iterate, which must be admissible. Its displacement,
+     *           phases and, if it updates them, normal forces are changed: each
+     *           node then takes its normal force from the intermediate iterate
+     *           just before it is relaxed, (6.19). Its residual is that of the
+     *           displacement on return.
+     * @param trust_first_normal_forces  lets the first sweep work with the
+     *           given normal forces in any case.
      */
-    void sweeps(VectorType       &u,
-                const VectorType &f,
-                ContactState     &state,
-                const Sweeps     &what,
-                VectorType       *residual = nullptr) const;
+    void forward(Iterate           &x,
+                 const unsigned int n_sweeps,
+                 const bool         trust_first_normal_forces = false) const;
 
-    /** A single sweep. */
-    void
-    sweep(VectorType       &u,
-          const VectorType &f,
-          ContactState     &state,
-          const bool        update_normal_forces,
-          const bool        backwards) const
-    {
-      Sweeps what;
-      what.backwards            = backwards;
-      what.update_normal_forces = update_normal_forces;
-      sweeps(u, f, state, what);
-    }
-
-    /** Keeps those ghosts of a vector up to date that the rows of the matrix
-     * couple to. */
-    GhostExchange &
-    ghosts() const
-    {
-      return *exchange;
-    }
+    /** The same in descending order; the residual is not computed. */
+    void backward(Iterate &x, const unsigned int n_sweeps) const;
 
     std::size_t
     memory_consumption() const
@@ -112,9 +70,7 @@ namespace Friction
     }
 
   private:
-    const NodeBlockMatrix<dim>    &matrix;
-    const ContactBoundary<dim>    &contact;
-    const double                   friction_coefficient;
+    const DiscreteProblem<dim>    &problem;
     std::vector<NodeBlock<dim>>    inverses;
     std::vector<LocalProblem<dim>> local_problems;
     SweepSchedule<dim>             schedule;
@@ -122,18 +78,18 @@ namespace Friction
     // Diagonal blocks of contact nodes where they had to be enlarged.
     std::map<unsigned int, NodeBlock<dim>> damped_diagonals;
 
-    // Has buffers, which makes it change while it works.
-    std::unique_ptr<GhostExchange> exchange;
-
     // Contact nodes by chunk: those of chunk c are first_contact[c],... in the
     // permutation by_chunk.
     std::vector<unsigned int> first_contact, by_chunk;
 
+    void sweep(Iterate           &x,
+               const unsigned int n_sweeps,
+               const bool         backwards,
+               const bool         trust_first_normal_forces) const;
+
     void relax_contact_node(const unsigned int p,
-                            VectorType        &u,
-                            const VectorType  &f,
-                            ContactState      &state,
-                            const bool         update_normal_forces) const;
+                            Iterate           &x,
+                            const bool         update_normal_force) const;
   };
 } // namespace Friction
 

@@ -8,9 +8,22 @@
 namespace Friction
 {
   template <int dim>
-  Recombination<dim>::Recombination(const unsigned int n_steps)
-    : n_steps(n_steps)
+  Recombination<dim>::Recombination(const DiscreteProblem<dim> &problem,
+                                    const unsigned int          n_steps)
+    : problem(problem)
+    , n_steps(n_steps)
   {}
+
+
+
+  template <int dim>
+  void
+  Recombination<dim>::clear()
+  {
+    has_last = false;
+    steps.clear();
+    products.clear();
+  }
 
 
 
@@ -21,7 +34,7 @@ namespace Friction
   {
     if (n_steps == 0)
       return;
-    if (last_iterate.size() > 0)
+    if (has_last)
       {
         // The vectors of the oldest step are used again for the new one.
         if (steps.size() == n_steps)
@@ -41,6 +54,7 @@ namespace Friction
         products.front() = last_residual;
         products.front() -= residual;
       }
+    has_last      = true;
     last_iterate  = u;
     last_residual = residual;
   }
@@ -61,7 +75,7 @@ namespace Friction
 
     // Steps in the free subspace, up to the rounding of the iterates
     // themselves.
-    const MPI_Comm      comm   = v.get_mpi_communicator();
+    const MPI_Comm      comm   = problem.communicator();
     const unsigned int  n_dofs = v.locally_owned_size();
     std::vector<double> deviations(1 + steps.size(), 0.);
     for (unsigned int i = 0; i < n_dofs; ++i)

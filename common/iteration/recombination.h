@@ -1,8 +1,7 @@
 #ifndef friction_iteration_recombination_h
 #define friction_iteration_recombination_h
 
-#include <common/nodes/nodal_constraints.h>
-#include <common/nodes/node_block_matrix.h>
+#include <common/discretization/discrete_problem.h>
 #include <common/nodes/truncation.h>
 
 #include <deque>
@@ -28,8 +27,15 @@ namespace Friction
   class Recombination
   {
   public:
-    /** @param n_steps  number of previous steps to keep; zero for none. */
-    explicit Recombination(const unsigned int n_steps);
+    /**
+     * @param problem  kept by reference.
+     * @param n_steps  number of previous steps to keep; zero for none.
+     */
+    Recombination(const DiscreteProblem<dim> &problem,
+                  const unsigned int          n_steps);
+
+    /** Forgets all steps. */
+    void clear();
 
     /** Takes notice of a smoothed iterate and its residual f - A u. */
     void add_iterate(const VectorType &u, const VectorType &residual);
@@ -47,9 +53,11 @@ namespace Friction
                          const Truncation<dim> &truncation) const;
 
   private:
-    const unsigned int     n_steps;
-    VectorType             last_iterate, last_residual;
-    std::deque<VectorType> steps, products;
+    const DiscreteProblem<dim> &problem;
+    const unsigned int          n_steps;
+    bool                        has_last = false;
+    VectorType                  last_iterate, last_residual;
+    std::deque<VectorType>      steps, products;
   };
 } // namespace Friction
 

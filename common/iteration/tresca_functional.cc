@@ -41,7 +41,7 @@ namespace Friction
                                 const ContactState &state) const
   {
     VectorType r(u);
-    problem.matrix.residual(r.begin(), problem.forces.begin(), u.begin());
+    problem.stiffness.residual(r, problem.forces, u);
     return energy(u, r, state);
   }
 
@@ -168,13 +168,15 @@ namespace Friction
 
   template <int dim>
   double
-  TrescaFunctional<dim>::minimize_along(const VectorType   &v,
-                                        const VectorType   &u,
-                                        const ContactState &state,
-                                        const double        slope,
-                                        const double        curvature,
-                                        const double        largest) const
+  TrescaFunctional<dim>::minimize_along(const VectorType &v,
+                                        const Iterate    &x,
+                                        const double      slope,
+                                        const double      curvature,
+                                        const double      largest) const
   {
+    const VectorType   &u     = x.u;
+    const ContactState &state = x.state;
+
     // Per node with friction: bound, and the coefficients of
     // |u_T + alpha v_T|^2.
     struct Term

@@ -3,6 +3,7 @@
 
 #include <common/contact/contact_state.h>
 #include <common/discretization/discrete_problem.h>
+#include <common/iteration/iterate.h>
 
 namespace Friction
 {
@@ -16,11 +17,16 @@ namespace Friction
   class TrescaFunctional
   {
   public:
-    /** @p problem is copied; what it refers to is not. */
+    /** @p problem is kept by reference. */
     explicit TrescaFunctional(const DiscreteProblem<dim> &problem);
 
-    /** The energy. Costs a product with the stiffness matrix, for which the
-     * ghosts of @p u must be valid. Collective. */
+    const DiscreteProblem<dim> &
+    discrete_problem() const
+    {
+      return problem;
+    }
+
+    /** The energy. Costs a product with the stiffness matrix. Collective. */
     double energy(const VectorType &u, const ContactState &state) const;
 
     /** The energy, given the residual r = f - A u. Collective. */
@@ -54,7 +60,7 @@ namespace Friction
                            const ContactState &state) const;
 
     /**
-     * The exact minimiser of $\hat J(u+\alpha v)$ over $0\le\alpha\le$ @p
+     * The exact minimiser of $\hat J(u+\alpha v)$, u the iterate @p x, over $0\le\alpha\le$ @p
      * largest, the obstacle being disregarded. The energy is convex along the
      * line and smooth but for the points where a node comes to rest, so that
      * regula falsi on the derivative, safeguarded by bisection, finds it.
@@ -64,12 +70,11 @@ namespace Friction
      * @param slope      $(f - A u)\cdot v$, the decrease of the quadratic part.
      * @param curvature  $v^T A v$.
      */
-    double minimize_along(const VectorType   &v,
-                          const VectorType   &u,
-                          const ContactState &state,
-                          const double        slope,
-                          const double        curvature,
-                          const double        largest) const;
+    double minimize_along(const VectorType &v,
+                          const Iterate    &x,
+                          const double      slope,
+                          const double      curvature,
+                          const double      largest) const;
 
     /** The largest factor, at most @p largest, by which @p v may be scaled so
      * that u + v does not penetrate; at least 1 if v itself does not. */
@@ -78,7 +83,7 @@ namespace Friction
                              const double      largest) const;
 
   private:
-    const DiscreteProblem<dim> problem;
+    const DiscreteProblem<dim> &problem;
   };
 } // namespace Friction
 

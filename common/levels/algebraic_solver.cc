@@ -18,8 +18,8 @@ namespace Friction
     product(const VectorType &a, const VectorType &b)
     {
       if (Utilities::MPI::n_mpi_processes(a.get_mpi_communicator()) > 1)
-        count_reduction();
-      const WaitingScope waiting;
+        count_reduction(a.get_mpi_communicator());
+      const WaitingScope waiting(a.get_mpi_communicator());
       return a * b;
     }
   } // namespace

@@ -97,8 +97,9 @@ namespace Friction
       {
         const IndexSet &owned = dof_handler.locally_owned_mg_dofs(k);
         levels[k].nodes       = NodeNumbering(
-          NodeDistribution(owned.n_elements() / dim,
-                           Compatibility::mpi_communicator(dof_handler)));
+          NodeDistribution(
+            owned.n_elements() / dim,
+            constraints.numbering().distribution().shared_communicator()));
         Assert(owned.n_elements() == 0 ||
                  owned.nth_index_in_set(0) ==
                    dim * levels[k].nodes.distribution().global(0),
@@ -118,6 +119,32 @@ namespace Friction
           }
       }
     classify_nodes(constraints, leaf);
+    make_layouts();
+  }
+
+
+
+  template <int dim>
+  void
+  LevelHierarchy<dim>::make_layouts()
+  {
+    for (Level &level : levels)
+      {
+        const NodeDistribution &distribution = level.nodes.distribution();
+        IndexSet                owned(dim * distribution.n_global());
+        IndexSet                ghosts(owned.size());
+        if (level.n_nodes() > 0)
+          owned.add_range(dim * level.nodes.global(0),
+                          dim * (level.nodes.global(0) + level.n_nodes()));
+        std::vector<types::global_dof_index> ghost_dofs;
+        for (unsigned int i = level.n_nodes(); i < level.n_local_nodes(); ++i)
+          for (unsigned int d = 0; d < dim; ++d)
+            ghost_dofs.push_back(dim * level.nodes.global(i) + d);
+        std::sort(ghost_dofs.begin(), ghost_dofs.end());
+        ghosts.add_indices(ghost_dofs.begin(), ghost_dofs.end());
+        level.layout = std::make_shared<Utilities::MPI::Partitioner>(
+          owned, ghosts, distribution.communicator());
+      }
   }
 
 

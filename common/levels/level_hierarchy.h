@@ -63,6 +63,15 @@ namespace Friction
         return nodes;
       }
 
+      /** The layout of vectors: the degrees of freedom of owned nodes, then of
+       * ghosts. These have the order of numbering(), which is not ascending as
+       * deal.II's is; only their number is that of the partitioner. */
+      const std::shared_ptr<const Utilities::MPI::Partitioner> &
+      partitioner() const
+      {
+        return layout;
+      }
+
       /** The number of owned nodes. */
       unsigned int
       n_nodes() const
@@ -193,6 +202,7 @@ namespace Friction
       static constexpr unsigned char hanging_bit = 0x80;
 
       NodeNumbering                      nodes;
+      std::shared_ptr<const Utilities::MPI::Partitioner> layout;
       std::vector<unsigned int>          leaf_nodes;
       std::vector<LeafNode>              own;
       NodeWeights                        parent_weights, child_weights;
@@ -280,6 +290,8 @@ namespace Friction
 
     void find_children(const NodalConstraints<dim> &constraints,
                        const unsigned int           k);
+
+    void make_layouts();
 
     void classify_nodes(const NodalConstraints<dim> &constraints,
                         const LeafInformation       &leaf);

@@ -143,7 +143,8 @@ namespace Friction
     std::vector<MPI_Request> requests;
     for (const auto &message : messages)
       {
-        count_message(message.second.size() * sizeof(double));
+        count_message(nodes.communicator(),
+                      message.second.size() * sizeof(double));
         requests.emplace_back();
         MPI_Isend(message.second.data(),
                   message.second.size(),
@@ -158,7 +159,7 @@ namespace Friction
       {
         MPI_Status         status;
         int                size;
-        const WaitingScope waiting;
+        const WaitingScope waiting(nodes.communicator());
         MPI_Probe(parts.first, tag, nodes.communicator(), &status);
         MPI_Get_count(&status, MPI_DOUBLE, &size);
         std::vector<double> message(size);

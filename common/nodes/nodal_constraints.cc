@@ -30,7 +30,8 @@ namespace Friction
     values.reinit(leaf_partitioner);
     node_numbering = NodeNumbering(
       NodeDistribution(leaf_partitioner->locally_owned_size() / dim,
-                       Compatibility::mpi_communicator(dof_handler)));
+                       std::make_shared<SolverCommunicator>(
+                         Compatibility::mpi_communicator(dof_handler))));
     for (unsigned int local = leaf_partitioner->locally_owned_size();
          local < n_dofs;
          local += dim)

@@ -245,34 +245,30 @@ namespace Friction
 
   template <int dim>
   void
-  FieldWriter<dim>::write_level(const unsigned int               level,
-                                const Mapping<dim>              &mapping,
-                                const DoFHandler<dim>           &dof_handler,
-                                const VectorType                &displacement,
-                                const AffineConstraints<double> &constraints,
-                                const std::vector<ContactRecord<dim>> &contact,
-                                const Vector<float> *cell_errors)
+  FieldWriter<dim>::write_level(const unsigned int      level,
+                                const LevelFields<dim> &fields,
+                                const std::vector<ContactRecord<dim>> &contact)
   {
-    write_body(level, mapping, dof_handler, displacement, cell_errors);
+    write_body(level, fields);
 
     // Whether there is a contact boundary is a question to all processes.
-    const MPI_Comm communicator = Compatibility::mpi_communicator(dof_handler);
-    if (Utilities::MPI::max<unsigned int>(contact.empty() ? 0 : 1,
-                                          communicator) > 0)
-      write_contact_boundary(
-        level, mapping, dof_handler, displacement, constraints, contact);
+    if (Utilities::MPI::max<unsigned int>(
+          contact.empty() ? 0 : 1,
+          Compatibility::mpi_communicator(fields.dof_handler)) > 0)
+      write_contact_boundary(level, fields, contact);
   }
 
 
 
   template <int dim>
   void
-  FieldWriter<dim>::write_body(const unsigned int     level,
-                               const Mapping<dim>    &mapping,
-                               const DoFHandler<dim> &dof_handler,
-                               const VectorType      &displacement,
-                               const Vector<float>   *cell_errors)
+  FieldWriter<dim>::write_body(const unsigned int      level,
+                               const LevelFields<dim> &fields)
   {
+    const Mapping<dim>    &mapping      = fields.mapping;
+    const DoFHandler<dim> &dof_handler  = fields.dof_handler;
+    const VectorType      &displacement = fields.displacement;
+    const Vector<float>   *cell_errors  = fields.cell_errors;
     const VolumetricStrainField<dim> volumetric_strain(
       mapping, dof_handler, material.volumetric_strain(), displacement);
     const Stresses<dim> stresses(material, volumetric_strain);
@@ -446,12 +442,14 @@ namespace Friction
   void
   FieldWriter<dim>::write_contact_boundary(
     const unsigned int                     level,
-    const Mapping<dim>                    &mapping,
-    const DoFHandler<dim>                 &dof_handler,
-    const VectorType                      &displacement,
-    const AffineConstraints<double>       &constraints,
+    const LevelFields<dim>                &fields,
     const std::vector<ContactRecord<dim>> &contact)
   {
+    const Mapping<dim>              &mapping      = fields.mapping;
+    const DoFHandler<dim>           &dof_handler  = fields.dof_handler;
+    const AffineConstraints<double> &constraints  = fields.hanging_nodes;
+    const VectorType                &displacement = fields.displacement;
+
     // Every process knows its own nodes, but its faces have corners that others
     // own. So the data travel like displacements do: in vectors with room for
     // dim numbers per node, as many of them as it takes.

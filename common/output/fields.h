@@ -29,6 +29,24 @@
 
 namespace Friction
 {
+  /** What there is to see on a level: references. */
+  template <int dim>
+  struct LevelFields
+  {
+    const dealii::Mapping<dim>              &mapping;
+    const dealii::DoFHandler<dim>           &dof_handler;
+    const dealii::AffineConstraints<double> &hanging_nodes;
+
+    /// Of that DoFHandler (FESystem of dim FE_Q(1)), with ghost values and
+    /// hanging nodes interpolated.
+    const dealii::LinearAlgebra::distributed::Vector<double> &displacement;
+
+    /// Estimated errors, one value per active cell; or nothing.
+    const dealii::Vector<float> *cell_errors = nullptr;
+  };
+
+
+
   /**
    * Writes what is to be looked at with ParaView: for every level the body with
    * its displacement and stress, and the possible contact boundary with the
@@ -80,24 +98,14 @@ namespace Friction
      * Write the fields of a level. A collective operation; an error of one
      * process is that of all.
      *
-     * @param displacement of @p dof_handler (FESystem of dim FE_Q(1)), with
-     *                     ghost values and hanging nodes interpolated.
-     * @param constraints  hanging nodes, to interpolate on the contact
-     * boundary.
-     * @param contact      the contact nodes that this process owns;
-     *                     ContactRecord::dof must be set. If no process has
-     *                     any, no boundary is written.
-     * @param cell_errors  one value per active cell, or nothing.
+     * @param contact  the contact nodes that this process owns;
+     *                 ContactRecord::dof must be set. If no process has any, no
+     *                 boundary is written.
      */
-    void write_level(const unsigned int                       level,
-                     const dealii::Mapping<dim>              &mapping,
-                     const dealii::DoFHandler<dim>           &dof_handler,
-                     const VectorType                        &displacement,
-                     const dealii::AffineConstraints<double> &constraints,
-                     const std::vector<ContactRecord<dim>>   &contact,
-                     const dealii::Vector<float> *cell_errors = nullptr);
+    void write_level(const unsigned int                     level,
+                     const LevelFields<dim>                &fields,
+                     const std::vector<ContactRecord<dim>> &contact);
 
-    /// Which files there are, for those that list them.
     template <class Archive>
     void
     serialize(Archive &archive, const unsigned int /*version*/)
@@ -106,11 +114,7 @@ namespace Friction
     }
 
   private:
-    void write_body(const unsigned int             level,
-                    const dealii::Mapping<dim>    &mapping,
-                    const dealii::DoFHandler<dim> &dof_handler,
-                    const VectorType              &displacement,
-                    const dealii::Vector<float>   *cell_errors);
+    void write_body(const unsigned int level, const LevelFields<dim> &fields);
 
     void write_body_vtu(const unsigned int          level,
                         const dealii::DataOut<dim> &data_out,
@@ -122,12 +126,9 @@ namespace Friction
                          const MPI_Comm              communicator);
 
     void
-    write_contact_boundary(const unsigned int             level,
-                           const dealii::Mapping<dim>    &mapping,
-                           const dealii::DoFHandler<dim> &dof_handler,
-                           const VectorType              &displacement,
-                           const dealii::AffineConstraints<double> &constraints,
-                           const std::vector<ContactRecord<dim>>   &contact);
+    write_contact_boundary(const unsigned int                     level,
+                           const LevelFields<dim>                &fields,
+                           const std::vector<ContactRecord<dim>> &contact);
 
     using TimesAndNames = std::vector<std::pair<double, std::string>>;
 

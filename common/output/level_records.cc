@@ -1,6 +1,6 @@
-#include <common/compatibility.h>
-#include <common/output/level_records.h>
 #include <common/algorithms/safeguarded_solver.h>
+#include <common/contact/contact_forces.h>
+#include <common/output/level_records.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/numbers.h>
@@ -46,14 +46,15 @@ namespace Friction
 
   template <int dim>
   LevelRecords<dim>
-  make_level_records(const unsigned int           level,
-                     const DoFHandler<dim>       &dof_handler,
-                     const NodalConstraints<dim> &constraints,
-                     const ContactBoundary<dim>  &contact_boundary,
-                     const VectorType            &displacement,
-                     const ContactState          &state,
-                     const SolverReport          &report)
+  make_level_records(const unsigned int         level,
+                     const Discretization<dim> &discretization,
+                     const VectorType          &displacement,
+                     const ContactState        &state,
+                     const SolverReport        &report)
   {
+    const DoFHandler<dim>       &dof_handler = discretization.dof_handler();
+    const NodalConstraints<dim> &constraints = discretization.constraints();
+    const ContactBoundary<dim>  &contact_boundary = discretization.contact();
     LevelRecords<dim> records;
 
     records.costs         = report.costs;
@@ -74,7 +75,7 @@ namespace Friction
     record.attempts  = std::max<unsigned int>(1, report.attempts.size());
     records.attempts = describe_attempts(report);
 
-    const MPI_Comm communicator = Compatibility::mpi_communicator(dof_handler);
+    const MPI_Comm communicator = constraints.communicator();
     record.contact_nodes = Utilities::MPI::sum(state.n_contact(), communicator);
     record.sticky_nodes = Utilities::MPI::sum(state.n_sticking(), communicator);
 
@@ -144,16 +145,12 @@ namespace Friction
 
 
   template LevelRecords<2> make_level_records(const unsigned int,
-                                              const DoFHandler<2> &,
-                                              const NodalConstraints<2> &,
-                                              const ContactBoundary<2> &,
+                                              const Discretization<2> &,
                                               const VectorType &,
                                               const ContactState &,
                                               const SolverReport &);
   template LevelRecords<3> make_level_records(const unsigned int,
-                                              const DoFHandler<3> &,
-                                              const NodalConstraints<3> &,
-                                              const ContactBoundary<3> &,
+                                              const Discretization<3> &,
                                               const VectorType &,
                                               const ContactState &,
                                               const SolverReport &);

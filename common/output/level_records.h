@@ -2,7 +2,8 @@
 #define friction_output_level_records_h
 
 #include <common/output/history.h>
-#include <common/algorithms/coulomb_solver.h>
+#include <common/algorithms/solver_report.h>
+#include <common/discretization/discretization.h>
 
 #include <string>
 #include <vector>
@@ -61,13 +62,11 @@ namespace Friction
    */
   template <int dim>
   LevelRecords<dim>
-  make_level_records(const unsigned int           level,
-                     const DoFHandler<dim>       &dof_handler,
-                     const NodalConstraints<dim> &constraints,
-                     const ContactBoundary<dim>  &contact_boundary,
-                     const VectorType            &displacement,
-                     const ContactState          &state,
-                     const SolverReport          &report);
+  make_level_records(const unsigned int         level,
+                     const Discretization<dim> &discretization,
+                     const VectorType          &displacement,
+                     const ContactState        &state,
+                     const SolverReport        &report);
 } // namespace Friction
 
 #endif

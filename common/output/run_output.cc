@@ -74,12 +74,10 @@ namespace Friction
 
   template <int dim>
   void
-  RunOutput<dim>::add_level(const LevelRecords<dim>         &records,
-                            const Mapping<dim>              &mapping,
-                            const DoFHandler<dim>           &dof_handler,
-                            const AffineConstraints<double> &hanging_nodes,
-                            const VectorType                &displacement,
-                            const Vector<float>             &cell_errors)
+  RunOutput<dim>::add_level(const LevelRecords<dim>   &records,
+                            const Discretization<dim> &discretization,
+                            const VectorType          &displacement,
+                            const Vector<float>       &cell_errors)
   {
     // These results take the place of older ones, to which the checkpoints
     // belong.
@@ -93,17 +91,17 @@ namespace Friction
       the_console.note(
         describe_profile(records,
                          parameters.output.times,
-                         Compatibility::mpi_communicator(dof_handler)));
+                         discretization.constraints().communicator()));
     history.add_level(
       records.level, records.cycles, records.contact, records.outer);
     if (parameters.output.fields)
       fields.write_level(records.level.level,
-                         mapping,
-                         dof_handler,
-                         displacement,
-                         hanging_nodes,
-                         records.own_contact,
-                         cell_errors.size() > 0 ? &cell_errors : nullptr);
+                         {discretization.mapping(),
+                          discretization.dof_handler(),
+                          discretization.hanging_nodes(),
+                          displacement,
+                          cell_errors.size() > 0 ? &cell_errors : nullptr},
+                         records.own_contact);
   }
 
 

@@ -53,12 +53,10 @@ namespace Friction
      *
      * @param cell_errors  estimated errors of the active cells, or empty.
      */
-    void add_level(const LevelRecords<dim>         &records,
-                   const Mapping<dim>              &mapping,
-                   const DoFHandler<dim>           &dof_handler,
-                   const AffineConstraints<double> &hanging_nodes,
-                   const VectorType                &displacement,
-                   const Vector<float>             &cell_errors);
+    void add_level(const LevelRecords<dim>   &records,
+                   const Discretization<dim> &discretization,
+                   const VectorType          &displacement,
+                   const Vector<float>       &cell_errors);
 
     /**
      * A remark on the error of a solution that is known.

@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 namespace Friction
 {
   namespace
   {
     // Messages between the same two processes keep their order, so that one tag
-    // is enough.
+    // is enough on a communicator of one's own.
     constexpr int tag = 4711;
   } // namespace
 
@@ -42,6 +43,26 @@ namespace Friction
         entry.second.rank = entry.first;
         neighbours.push_back(std::move(entry.second));
       }
+  }
+
+
+
+  GhostExchange::GhostExchange(GhostExchange &&other) noexcept
+  {
+    *this = std::move(other);
+  }
+
+
+
+  GhostExchange &
+  GhostExchange::operator=(GhostExchange &&other) noexcept
+  {
+    Assert(requests.empty() && other.requests.empty(),
+           ExcMessage("An exchange cannot be moved while it is under way."));
+    comm       = other.comm;
+    neighbours = std::move(other.neighbours);
+    n_values   = other.n_values;
+    return *this;
   }
 
 
@@ -83,7 +104,7 @@ namespace Friction
                         target);
         if (!n.to_send.empty())
           {
-            count_message(n.to_send.size() * sizeof(double));
+            count_message(comm, n.to_send.size() * sizeof(double));
             requests.emplace_back();
             MPI_Isend(n.to_send.data(),
                       n.to_send.size(),
@@ -103,7 +124,7 @@ namespace Friction
   {
     if (!requests.empty())
       {
-        const WaitingScope waiting;
+        const WaitingScope waiting(comm);
         MPI_Waitall(requests.size(), requests.data(), MPI_STATUSES_IGNORE);
       }
     requests.clear();

@@ -26,6 +26,12 @@ namespace Friction
   public:
     GhostExchange() = default;
 
+    // A message on its way has an address to go to.
+    GhostExchange(const GhostExchange &)            = delete;
+    GhostExchange &operator=(const GhostExchange &) = delete;
+    GhostExchange(GhostExchange &&other) noexcept;
+    GhostExchange &operator=(GhostExchange &&other) noexcept;
+
     /**
      * Collective.
      * @param numbering  gives ghosts their places in vectors.

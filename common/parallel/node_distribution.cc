@@ -5,13 +5,15 @@
 
 namespace Friction
 {
-  NodeDistribution::NodeDistribution(const unsigned int n_owned,
-                                     const MPI_Comm     comm)
-    : comm(comm)
-    , my_rank(Utilities::MPI::this_mpi_process(comm))
+  NodeDistribution::NodeDistribution(
+    const unsigned int                                n_owned,
+    const std::shared_ptr<const SolverCommunicator> &communicator)
+    : shared_comm(communicator)
+    , my_rank(Utilities::MPI::this_mpi_process(communicator->get()))
     , starts(1, 0)
   {
-    for (const unsigned int n : Utilities::MPI::all_gather(comm, n_owned))
+    for (const unsigned int n :
+         Utilities::MPI::all_gather(communicator->get(), n_owned))
       starts.push_back(starts.back() + n);
   }
 

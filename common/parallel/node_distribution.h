@@ -1,10 +1,13 @@
 #ifndef friction_parallel_node_distribution_h
 #define friction_parallel_node_distribution_h
 
+#include <common/parallel/solver_communicator.h>
+
 #include <deal.II/base/index_set.h>
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/types.h>
 
+#include <memory>
 #include <unordered_map>
 #include <vector>
 
@@ -25,12 +28,21 @@ namespace Friction
     NodeDistribution() = default;
 
     /** Collective: each process says how many it owns. */
-    NodeDistribution(const unsigned int n_owned, const MPI_Comm comm);
+    NodeDistribution(
+      const unsigned int                                n_owned,
+      const std::shared_ptr<const SolverCommunicator> &communicator);
 
     MPI_Comm
     communicator() const
     {
-      return comm;
+      return shared_comm ? shared_comm->get() : MPI_COMM_SELF;
+    }
+
+    /** For other distributions of the same problem. */
+    const std::shared_ptr<const SolverCommunicator> &
+    shared_communicator() const
+    {
+      return shared_comm;
     }
 
     unsigned int
@@ -81,9 +93,9 @@ namespace Friction
     unsigned int owner(const GlobalNode node) const;
 
   private:
-    MPI_Comm                comm    = MPI_COMM_SELF;
-    unsigned int            my_rank = 0;
-    std::vector<GlobalNode> starts  = {0, 0};
+    std::shared_ptr<const SolverCommunicator> shared_comm;
+    unsigned int                              my_rank = 0;
+    std::vector<GlobalNode>                   starts  = {0, 0};
   };
 
 

@@ -4,32 +4,26 @@ namespace Friction
 {
   namespace
   {
-    using Clock = std::chrono::steady_clock;
-
-    PhaseCosts        costs;
-    SolverPhase       present = SolverPhase::other;
-    Clock::time_point since   = Clock::now();
-
-    PhaseCost &
-    present_cost()
-    {
-      return costs[static_cast<unsigned int>(present)];
-    }
-
     double
-    seconds_since(const Clock::time_point start, const Clock::time_point end)
+    seconds_until(const std::chrono::steady_clock::time_point start,
+                  const std::chrono::steady_clock::time_point end)
     {
       return std::chrono::duration<double>(end - start).count();
     }
 
-    // Time is booked when the phase changes.
-    void
-    change_phase(const SolverPhase phase)
+    // The key under which MPI keeps accounts.
+    int
+    account_key()
     {
-      const Clock::time_point now = Clock::now();
-      present_cost().seconds += seconds_since(since, now);
-      since   = now;
-      present = phase;
+      static const int key = []() {
+        int new_key = MPI_KEYVAL_INVALID;
+        MPI_Comm_create_keyval(MPI_COMM_NULL_COPY_FN,
+                               MPI_COMM_NULL_DELETE_FN,
+                               &new_key,
+                               nullptr);
+        return new_key;
+      }();
+      return key;
     }
   } // namespace
 
@@ -73,55 +67,112 @@ namespace Friction
 
 
 
-  PhaseCosts
-  phase_costs()
+  CostAccount::CostAccount()
+    : since(Clock::now())
+  {}
+
+
+
+  void
+  CostAccount::attach(const MPI_Comm communicator)
   {
-    change_phase(present);
-    return costs;
+    MPI_Comm_set_attr(communicator, account_key(), this);
   }
 
 
 
-  PhaseScope::PhaseScope(const SolverPhase phase)
-    : before(present)
+  CostAccount *
+  CostAccount::of(const MPI_Comm communicator)
   {
-    change_phase(phase);
+    void *account = nullptr;
+    int   found   = 0;
+    MPI_Comm_get_attr(communicator, account_key(), &account, &found);
+    return found ? static_cast<CostAccount *>(account) : nullptr;
+  }
+
+
+
+  SolverPhase
+  CostAccount::change_phase(const SolverPhase phase)
+  {
+    const Clock::time_point now = Clock::now();
+    present_cost().seconds += seconds_until(since, now);
+    since                    = now;
+    const SolverPhase before = present;
+    present                  = phase;
+    return before;
+  }
+
+
+
+  const PhaseCosts &
+  CostAccount::costs()
+  {
+    change_phase(present);
+    return all_costs;
+  }
+
+
+
+  PhaseCosts
+  phase_costs(const MPI_Comm communicator)
+  {
+    CostAccount *const account = CostAccount::of(communicator);
+    return account != nullptr ? account->costs() : PhaseCosts{};
+  }
+
+
+
+  PhaseScope::PhaseScope(const MPI_Comm communicator, const SolverPhase phase)
+    : account(CostAccount::of(communicator))
+    , before(phase)
+  {
+    if (account != nullptr)
+      before = account->change_phase(phase);
   }
 
 
 
   PhaseScope::~PhaseScope()
   {
-    change_phase(before);
+    if (account != nullptr)
+      account->change_phase(before);
   }
 
 
 
   void
-  count_message(const std::size_t bytes)
+  count_message(const MPI_Comm communicator, const std::size_t bytes)
   {
-    ++present_cost().messages;
-    present_cost().bytes += bytes;
+    if (CostAccount *const account = CostAccount::of(communicator))
+      {
+        ++account->present_cost().messages;
+        account->present_cost().bytes += bytes;
+      }
   }
 
 
 
   void
-  count_reduction()
+  count_reduction(const MPI_Comm communicator)
   {
-    ++present_cost().reductions;
+    if (CostAccount *const account = CostAccount::of(communicator))
+      ++account->present_cost().reductions;
   }
 
 
 
-  WaitingScope::WaitingScope()
-    : start(Clock::now())
+  WaitingScope::WaitingScope(const MPI_Comm communicator)
+    : account(CostAccount::of(communicator))
+    , start(std::chrono::steady_clock::now())
   {}
 
 
 
   WaitingScope::~WaitingScope()
   {
-    present_cost().waiting += seconds_since(start, Clock::now());
+    if (account != nullptr)
+      account->present_cost().waiting +=
+        seconds_until(start, std::chrono::steady_clock::now());
   }
 } // namespace Friction

@@ -1,6 +1,8 @@
 #ifndef friction_parallel_phase_costs_h
 #define friction_parallel_phase_costs_h
 
+#include <deal.II/base/mpi.h>
+
 #include <array>
 #include <chrono>
 #include <cstddef>
@@ -42,51 +44,90 @@ namespace Friction
   PhaseCosts operator-(const PhaseCosts &after, const PhaseCosts &before);
 
   /**
-   * What this process has spent since it started, by phase.
+   * What this process has spent on one discrete problem, by phase.
    *
    * Communication is counted where it happens, in GhostExchange and in the
    * reductions of reductions.h, rather than estimated. What Trilinos sends
-   * while it solves the coarsest problem, and what deal.II sends during set-up,
-   * is not seen here.
+   * while it solves the coarsest problem, and what deal.II sends, is not seen
+   * here.
    *
-   * The costs belong to the process and not to any object, since the present
-   * phase is a matter of where the program is: a PhaseScope says so for as long
-   * as it lives.
+   * The account is attached to a communicator (see SolverCommunicator), and
+   * found again by all that is given this communicator.
    */
-  PhaseCosts phase_costs();
+  class CostAccount
+  {
+  public:
+    CostAccount();
+
+    CostAccount(const CostAccount &)            = delete;
+    CostAccount &operator=(const CostAccount &) = delete;
+
+    /** Makes this the account of @p communicator, which it must outlive. */
+    void attach(const MPI_Comm communicator);
+
+    /** The account of a communicator; null if it has none. */
+    static CostAccount *of(const MPI_Comm communicator);
+
+    /** Books the time that has passed, and goes on in another phase. Returns
+     * the phase until now. */
+    SolverPhase change_phase(const SolverPhase phase);
+
+    /** What has been spent until now. */
+    const PhaseCosts &costs();
+
+    /** Of the present phase. */
+    PhaseCost &
+    present_cost()
+    {
+      return all_costs[static_cast<unsigned int>(present)];
+    }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    PhaseCosts        all_costs{};
+    SolverPhase       present = SolverPhase::other;
+    Clock::time_point since;
+  };
+
+  /** What has been counted for @p communicator until now; nothing if it has no
+   * account. */
+  PhaseCosts phase_costs(const MPI_Comm communicator);
 
   /** Sets the phase of what is counted until the object is destroyed, when the
    * phase before it is resumed. */
   class PhaseScope
   {
   public:
-    explicit PhaseScope(const SolverPhase phase);
+    PhaseScope(const MPI_Comm communicator, const SolverPhase phase);
     ~PhaseScope();
 
     PhaseScope(const PhaseScope &)            = delete;
     PhaseScope &operator=(const PhaseScope &) = delete;
 
   private:
-    const SolverPhase before;
+    CostAccount *const account;
+    SolverPhase        before;
   };
 
-  /** To be called by whoever sends a message. */
-  void count_message(const std::size_t bytes);
+  /** Counts a message of so many bytes that this process sends. */
+  void count_message(const MPI_Comm communicator, const std::size_t bytes);
 
-  /** To be called by whoever takes part in a reduction. */
-  void count_reduction();
+  /** Counts a reduction over all processes. */
+  void count_reduction(const MPI_Comm communicator);
 
   /** Counts the time until it is destroyed as waiting. */
   class WaitingScope
   {
   public:
-    WaitingScope();
+    explicit WaitingScope(const MPI_Comm communicator);
     ~WaitingScope();
 
     WaitingScope(const WaitingScope &)            = delete;
     WaitingScope &operator=(const WaitingScope &) = delete;
 
   private:
+    CostAccount *const                          account;
     const std::chrono::steady_clock::time_point start;
   };
 } // namespace Friction

@@ -25,8 +25,8 @@ namespace Friction
   {
     if (dealii::Utilities::MPI::n_mpi_processes(comm) == 1)
       return;
-    count_reduction();
-    const WaitingScope waiting;
+    count_reduction(comm);
+    const WaitingScope waiting(comm);
     MPI_Allreduce(MPI_IN_PLACE, values, n, MPI_DOUBLE, operation, comm);
   }
 

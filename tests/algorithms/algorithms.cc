@@ -14,7 +14,7 @@
 
 #include <tests/support/check.h>
 
-#include "../support/nested_iteration.h"
+#include <tests/support/discretized.h>
 #include "../support/random_problem.h"
 
 using namespace Tests;
@@ -63,6 +63,7 @@ namespace
     std::cout << "Algorithms 2 and 3" << std::endl;
     NestedIteration<2> iteration(read_parameters(
       SCENES_DIR "/hertz.prm", {"Refinement/Maximum dofs=1500"}));
+    iteration.begin();
     SolverSettings     fixed_point  = iteration.parameters.solver;
     fixed_point.algorithm           = Algorithm::fixed_point;
     SolverSettings damped           = fixed_point;
@@ -78,16 +79,16 @@ namespace
         VectorType         u;
         ContactState       state(0, false);
         const SolverReport report = iteration.solve_with(fixed_point, u, state);
-        converged = converged && iteration.report.converged && report.converged;
+        converged = converged && iteration.report().converged && report.converged;
         outer     = std::max(outer, report.outer_iterations);
         displacement = std::max(displacement,
-                                largest_difference(u, iteration.displacement) /
+                                largest_difference(u, iteration.displacement()) /
                                   u.linfty_norm());
         force        = std::max(
           force,
-          largest_difference(report.residual, iteration.report.residual) /
+          largest_difference(report.residual, iteration.report().residual) /
             report.residual.linfty_norm());
-        same = same && same_states(state, iteration.state);
+        same = same && same_states(state, iteration.state());
 
         counted =
           counted && report.outer_changes.size() == report.outer_iterations;
@@ -95,10 +96,10 @@ namespace
         const SolverReport slow = iteration.solve_with(damped, u, state);
         converged               = converged && slow.converged &&
           slow.outer_iterations >= report.outer_iterations;
-        same                = same && same_states(state, iteration.state);
+        same                = same && same_states(state, iteration.state());
         damped_displacement = std::max(
           damped_displacement,
-          largest_difference(u, iteration.displacement) / u.linfty_norm());
+          largest_difference(u, iteration.displacement()) / u.linfty_norm());
     } while (iteration.refine());
     check(converged, "both converge on every level");
     check_below(displacement, 1e-6, "displacements agree to 1e-6");
@@ -162,8 +163,8 @@ namespace
     ContactState states(0, false);
     for (const auto &choice : choices)
       {
-        VectorType         u = d.admissible_start();
-        ContactState       state(d.contact->size(), true);
+        VectorType         u = admissible_start(d);
+        ContactState       state(d.contact().size(), true);
         CoulombSolver<3>   solver(*d.hierarchy, d.problem(), choice.second);
         const SolverReport report = solver.solve(u, state);
         if (solution.size() == 0)
@@ -177,7 +178,7 @@ namespace
                 fixture.n_hanging_at_contact([&](const unsigned int p) {
                   return state.in_contact(p) && state.sticks(p) == sticking;
                 });
-            std::cout << "three dimensions, " << d.contact->size()
+            std::cout << "three dimensions, " << d.contact().size()
                       << " contact nodes, " << state.n_contact()
                       << " in contact, " << state.n_sticking() << " stick"
                       << std::endl;
@@ -203,16 +204,17 @@ namespace
     std::cout << "initial guess" << std::endl;
     NestedIteration<2> iteration(read_parameters(
       SCENES_DIR "/hertz.prm", {"Refinement/Maximum dofs=1500"}));
+    iteration.begin();
     bool               admissible = true, prescribed = true, positive = true;
     double             total = 0;
     unsigned int       warm = 0, cold = 0;
     do
       {
-        const Discretization<2>   &d       = *iteration.discretization;
+        const Discretization<2>   &d       = iteration.discretization();
         const DiscreteProblem<2>   problem = d.problem();
         VectorType                 u;
         const ContactState         guess       = iteration.make_guess(u);
-        const NodalConstraints<2> &constraints = *d.constraints;
+        const NodalConstraints<2> &constraints = d.constraints();
         admissible                             = admissible &&
           TrescaFunctional<2>(problem).largest_penetration(u) <= 1e-16;
         for (unsigned int node = 0; node < constraints.n_nodes(); ++node)
@@ -230,13 +232,13 @@ namespace
 
         iteration.solve();
         for (unsigned int p = 0; p < guess.size(); ++p)
-          found += iteration.state.normal_force(p);
-        if (iteration.level >= 5)
+          found += iteration.state().normal_force(p);
+        if (iteration.level() >= 5)
           {
             // From here on the coarser mesh resolves the contact zone.
             total = std::max(total, std::abs(guessed / found - 1));
-            warm += iteration.report.cycles.size();
-            u                      = d.admissible_start();
+            warm += iteration.report().cycles.size();
+            u                      = admissible_start(d);
             ContactState     state = ContactState(guess.size(), true);
             CoulombSolver<2> solver(
               *d.hierarchy, problem, iteration.parameters.solver);
@@ -277,16 +279,16 @@ namespace
         for (const auto *other : {zero.get(), both.get()})
           {
             same = same && other->report.converged &&
-              same_bits(none->displacement, other->displacement) &&
-              same_bits(none->report.residual, other->report.residual) &&
-              same_states(none->state, other->state) &&
-              none->report.energy == other->report.energy &&
-              none->report.cycles.size() == other->report.cycles.size();
-            for (unsigned int c = 0; same && c < none->report.cycles.size();
+              same_bits(none->displacement(), other->displacement) &&
+              same_bits(none->report().residual, other->report.residual) &&
+              same_states(none->state(), other->state) &&
+              none->report().energy == other->report.energy &&
+              none->report().cycles.size() == other->report.cycles.size();
+            for (unsigned int c = 0; same && c < none->report().cycles.size();
                  ++c)
-              same = none->report.cycles[c].energy ==
+              same = none->report().cycles[c].energy ==
                   other->report.cycles[c].energy &&
-                none->report.cycles[c].increment ==
+                none->report().cycles[c].increment ==
                   other->report.cycles[c].increment;
           }
         for (const auto *one : {none.get(), zero.get(), both.get()})
@@ -311,7 +313,7 @@ namespace
     // coefficient of zero there is no friction, and a state that has none stays
     // without. One cycle truncates one component per node in contact, the
     // normal one, and no more.
-    const Discretization<2> &d         = *none->discretization;
+    const Discretization<2> &d         = *none->discretization();
     bool                     same_work = true, normal_only = true;
     VectorType               first;
     std::size_t              rows = 0, memory = 0;
@@ -321,8 +323,8 @@ namespace
         DiscreteProblem<2> problem   = d.problem();
         problem.friction_law         = law;
         problem.friction_coefficient = law == FrictionLaw::none ? 0.4 : 0.;
-        VectorType           u       = d.admissible_start();
-        ContactState         state(d.contact->size(), problem.has_friction());
+        VectorType           u       = admissible_start(d);
+        ContactState         state(d.contact().size(), problem.has_friction());
         MonotoneMultigrid<2> multigrid(
           *d.hierarchy, problem, none->parameters.solver);
         const MultigridResult result = multigrid.solve(u, state, true);

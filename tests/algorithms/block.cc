@@ -7,7 +7,7 @@
 #include <tests/support/check.h>
 
 #include "../reference/scenes.h"
-#include "../support/nested_iteration.h"
+#include <tests/support/discretized.h>
 
 using namespace Tests;
 
@@ -44,11 +44,12 @@ namespace
                        override("Refinement/Initial refinements", refinements),
                        "Solver/Inner tolerance=1e-12",
                        "Solver/Outer tolerance=1e-11"}));
-    const Discretization<2> &d = *iteration.discretization;
+    iteration.begin();
+    const Discretization<2> &d = iteration.discretization();
 
     // Which node of the reference each node is, and which of its contact
     // nodes: their order is that of the lower edge.
-    std::vector<unsigned int> number(d.constraints->n_nodes());
+    std::vector<unsigned int> number(d.constraints().n_nodes());
     const auto                points = node_points(d);
     for (unsigned int i = 0; i < points.size(); ++i)
       number[i] =
@@ -82,14 +83,14 @@ namespace
                     std::abs(-report.residual.local_element(2 * i + c) -
                              exact.residual[2 * number[i] + c]));
                 }
-            for (unsigned int p = 0; p < d.contact->size(); ++p)
+            for (unsigned int p = 0; p < d.contact().size(); ++p)
               {
                 const Reference::State found = !state.in_contact(p)
                   ? Reference::State::open
                   : state.sticks(p) ? Reference::State::sticking
                                     : Reference::State::sliding;
                 different_states +=
-                  (found != exact.state[number[(*d.contact)[p].node]]);
+                  (found != exact.state[number[(d.contact())[p].node]]);
               }
           }
     displacement_error /= length_scale;

@@ -9,7 +9,7 @@
 #include <tests/support/check.h>
 
 #include "../reference/scenes_3d.h"
-#include "../support/nested_iteration.h"
+#include <tests/support/discretized.h>
 
 using namespace Tests;
 
@@ -97,7 +97,7 @@ namespace
     {
       // Which node of the reference each node is. Contact nodes of the
       // reference have numbers of their own.
-      for (const Point<3> &p : node_points(*iteration.discretization))
+      for (const Point<3> &p : node_points(iteration.discretization()))
         number.push_back(Reference::node_at(problem.mesh, {p[0], p[1], p[2]}));
       state_at.resize(problem.mesh.nodes.size());
       for (unsigned int p = 0; p < problem.contact.size(); ++p)
@@ -113,7 +113,7 @@ namespace
     Difference
     solve(const Variant &variant)
     {
-      const Discretization<3> &d        = *iteration.discretization;
+      const Discretization<3> &d        = iteration.discretization();
       SolverSettings           settings = iteration.parameters.solver;
       settings.algorithm                = variant.algorithm;
       settings.coarse_correction        = variant.correction;
@@ -140,14 +140,14 @@ namespace
           }
       result.displacement /= exact.displacement.cwiseAbs().maxCoeff();
       result.force /= exact.normal_force.cwiseAbs().maxCoeff();
-      result.states = (d.contact->size() == exact.state.size() ? 0 : 1);
-      for (unsigned int p = 0; p < d.contact->size(); ++p)
+      result.states = (d.contact().size() == exact.state.size() ? 0 : 1);
+      for (unsigned int p = 0; p < d.contact().size(); ++p)
         {
           const Reference::State found = !state.in_contact(p)
             ? Reference::State::open
             : state.sticks(p) ? Reference::State::sticking
                               : Reference::State::sliding;
-          result.states += (found != state_at[number[(*d.contact)[p].node]]);
+          result.states += (found != state_at[number[(d.contact())[p].node]]);
         }
       return result;
     }

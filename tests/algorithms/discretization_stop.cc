@@ -8,7 +8,7 @@
 
 #include <tests/support/check.h>
 
-#include "../support/nested_iteration.h"
+#include <tests/support/discretized.h>
 
 using namespace Tests;
 
@@ -33,6 +33,7 @@ namespace
     NestedIteration<dim> nest(read_parameters(
       (dim == 2 ? SCENES_DIR "/" : SCENES_3D_DIR "/") + scene + ".prm",
       overrides));
+    nest.begin();
     SolverSettings       tight    = nest.parameters.solver;
     tight.inner_tolerance         = 1e-12;
     SolverSettings wanted         = nest.parameters.solver;
@@ -44,32 +45,32 @@ namespace
     bool         converged = true;
     do
       {
-        const Discretization<dim> &d      = *nest.discretization;
-        const auto                 n_dofs = d.dof_handler.n_dofs();
+        const Discretization<dim> &d      = nest.discretization();
+        const auto                 n_dofs = d.dof_handler().n_dofs();
         VectorType                 u;
         ContactState               state(0, false);
         n_tight_cycles += nest.solve_with(tight, u, state).cycles.size();
 
-        nest.report = nest.solve_with(
-          stop.settings_for(n_dofs), nest.displacement, nest.state);
-        converged = converged && nest.report.converged;
-        n_cycles += nest.report.cycles.size();
-        u -= nest.displacement;
-        const double error = energy_norm<dim>(d.matrix, u);
+        nest.report() = nest.solve_with(
+          stop.settings_for(n_dofs), nest.displacement(), nest.state());
+        converged = converged && nest.report().converged;
+        n_cycles += nest.report().cycles.size();
+        u -= nest.displacement();
+        const double error = energy_norm<dim>(d.stiffness().blocks(), u);
         nest.accept();
-        const ErrorEstimate estimate = estimate_contact_error(nest.scene,
-                                                              d.mapping,
-                                                              d.dof_handler,
-                                                              d.hanging,
-                                                              *d.constraints,
-                                                              *d.contact,
-                                                              nest.displacement,
-                                                              nest.tractions);
+        const ErrorEstimate estimate = estimate_contact_error(nest.scene(),
+                                                              d.mapping(),
+                                                              d.dof_handler(),
+                                                              d.hanging_nodes(),
+                                                              d.constraints(),
+                                                              d.contact(),
+                                                              nest.displacement(),
+                                                              nest.tractions());
         stop.add_estimate(estimate.total, n_dofs);
         share = std::max(share, error / estimate.total);
-        if (nest.level > 0)
+        if (nest.level() > 0)
           {
-            const double ratio = nest.report.algebraic_error / error;
+            const double ratio = nest.report().algebraic_error / error;
             extrapolation_low  = std::min(extrapolation_low, ratio);
             extrapolation_high = std::max(extrapolation_high, ratio);
           }

@@ -8,7 +8,7 @@
 
 #include <tests/support/check.h>
 
-#include "../support/nested_iteration.h"
+#include <tests/support/discretized.h>
 
 using namespace Tests;
 
@@ -41,21 +41,23 @@ namespace
   {
     NestedIteration<2> plane(read_parameters(
       SCENES_DIR "/hertz.prm", overrides(refinements, F, "1: 0, -0.08")));
+    plane.begin();
     Parameters         parameters = read_parameters(
       SCENES_3D_DIR "/extruded-hertz.prm",
       overrides(
         refinements, F, "1: 0, -0.08, 0; 2: free, free, 0; 3: free, free, 0"));
     parameters.solver.local_solver = local_solver;
     NestedIteration<3> solid(parameters);
+    solid.begin();
     plane.solve();
     solid.solve();
-    const ContactBoundary<2> &plane_contact = *plane.discretization->contact;
-    const ContactBoundary<3> &solid_contact = *solid.discretization->contact;
+    const ContactBoundary<2> &plane_contact = plane.discretization().contact();
+    const ContactBoundary<3> &solid_contact = solid.discretization().contact();
 
     // The layers of nodes, and what each of them stands for.
     const double       length = parameters.scene.length;
     const unsigned int n_layers =
-      solid.mesh->n_active_cells() / plane.mesh->n_active_cells();
+      solid.mesh().n_active_cells() / plane.mesh().n_active_cells();
     const auto z_measure = [&](const double z) {
       const bool at_end = (z < 1e-9 || z > length - 1e-9);
       return length / n_layers * (at_end ? .5 : 1.);
@@ -63,8 +65,8 @@ namespace
 
     // Displacements. The node of the plane mesh below a node is found by
     // coordinates; meshes that differ are found out, too.
-    const auto         plane_points       = node_points(*plane.discretization);
-    const auto         solid_points       = node_points(*solid.discretization);
+    const auto         plane_points       = node_points(plane.discretization());
+    const auto         solid_points       = node_points(solid.discretization());
     double             displacement_error = 0, displacement_scale = 0;
     unsigned int       n_without_partner = 0;
     const unsigned int none              = numbers::invalid_unsigned_int;
@@ -85,10 +87,10 @@ namespace
         for (unsigned int c = 0; c < 3; ++c)
           {
             const double expected =
-              (c < 2 ? plane.displacement.local_element(2 * j + c) : 0.);
+              (c < 2 ? plane.displacement().local_element(2 * j + c) : 0.);
             displacement_error = std::max(
               displacement_error,
-              std::abs(solid.displacement.local_element(3 * i + c) - expected));
+              std::abs(solid.displacement().local_element(3 * i + c) - expected));
             displacement_scale =
               std::max(displacement_scale, std::abs(expected));
           }
@@ -115,8 +117,8 @@ namespace
         const ContactNode<2> &below = plane_contact[q];
         const double          dz    = z_measure(node.point[2]);
         n_different_states +=
-          (solid.state.in_contact(p) != plane.state.in_contact(q) ||
-           solid.state.sticks(p) != plane.state.sticks(q));
+          (solid.state().in_contact(p) != plane.state().in_contact(q) ||
+           solid.state().sticks(p) != plane.state().sticks(q));
         geometry_error =
           std::max({geometry_error,
                     std::abs(node.measure / (dz * below.measure) - 1),
@@ -129,17 +131,17 @@ namespace
         for (unsigned int c = 0; c < 2; ++c)
           {
             const double expected =
-              dz * plane.report.residual.local_element(2 * below.node + c);
+              dz * plane.report().residual.local_element(2 * below.node + c);
             force_error = std::max(
               force_error,
-              std::abs(solid.report.residual.local_element(3 * node.node + c) -
+              std::abs(solid.report().residual.local_element(3 * node.node + c) -
                        expected));
             force_scale = std::max(force_scale, std::abs(expected));
           }
         if (std::abs(node.point[2] - length / 2) < .49 * length)
           force_error = std::max(
             force_error,
-            std::abs(solid.report.residual.local_element(3 * node.node + 2)));
+            std::abs(solid.report().residual.local_element(3 * node.node + 2)));
       }
     for (const unsigned int n : times_found)
       n_without_partner += (n != n_layers + 1);
@@ -147,15 +149,15 @@ namespace
     displacement_error /= displacement_scale;
     force_error /= force_scale;
     const double energy_error =
-      std::abs(solid.report.energy / (length * plane.report.energy) - 1);
+      std::abs(solid.report().energy / (length * plane.report().energy) - 1);
 
     std::cout << what << ", " << n_layers << " layers of "
-              << plane.mesh->n_active_cells()
-              << " cells: " << plane.state.n_contact()
+              << plane.mesh().n_active_cells()
+              << " cells: " << plane.state().n_contact()
               << " nodes of the cross-section in "
-              << "contact, " << plane.state.n_sticking() << " sticking"
+              << "contact, " << plane.state().n_sticking() << " sticking"
               << std::endl;
-    check(plane.report.converged && solid.report.converged &&
+    check(plane.report().converged && solid.report().converged &&
             n_without_partner == 0,
           "converged, and all nodes correspond");
     check_below(geometry_error, 1e-9, "normals, gaps and measures");

@@ -22,7 +22,7 @@
 
 #include <tests/support/check.h>
 
-#include "../support/nested_iteration.h"
+#include <tests/support/discretized.h>
 
 using namespace Tests;
 
@@ -156,13 +156,13 @@ namespace
       }
     mesh->refine_global(refinements);
 
-    const Discretization<3> discretization(scene, *mesh);
-    VectorType              u = discretization.admissible_start();
-    ContactState            state(discretization.contact->size(), false);
+    const Discretized<3> discretization(scene, *mesh);
+    VectorType              u = admissible_start(discretization);
+    ContactState            state(discretization.contact().size(), false);
     CoulombSolver<3>        solver(
       *discretization.hierarchy, discretization.problem(), parameters.solver);
     const SolverReport report = solver.solve(u, state);
-    const Measured     result = measure(*discretization.contact, state, report);
+    const Measured     result = measure(discretization.contact(), state, report);
     return result;
   }
 
@@ -242,16 +242,17 @@ main(int argc, char **argv)
   std::cout << "Adaptive refinement, a/R = 0.1" << std::endl;
   NestedIteration<3> iteration(
     half_ball(.01, {"Refinement/Maximum dofs=6000"}));
+  iteration.begin();
   unsigned int n_cycles = 0;
   do
     {
       iteration.solve();
-      if (iteration.level >= 2)
+      if (iteration.level() >= 2)
         n_cycles =
-          std::max<unsigned int>(n_cycles, iteration.report.cycles.size());
+          std::max<unsigned int>(n_cycles, iteration.report().cycles.size());
   } while (iteration.refine());
   const Measured m = measure(
-    *iteration.discretization->contact, iteration.state, iteration.report);
+    iteration.discretization().contact(), iteration.state(), iteration.report());
   check_zone(m, .02);
   check_below(n_cycles, 15, "cycles on each level from the second on");
 }

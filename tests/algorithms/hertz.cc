@@ -7,7 +7,7 @@
 #include <tests/support/check.h>
 
 #include "../reference/half_plane_contact.h"
-#include "../support/nested_iteration.h"
+#include <tests/support/discretized.h>
 
 using namespace Tests;
 
@@ -45,22 +45,23 @@ namespace
 
     NestedIteration<2> iteration(
       read_parameters(SCENES_DIR "/hertz.prm", overrides));
+    iteration.begin();
     Run result;
     do
       {
         iteration.solve();
-        result.converged = result.converged && iteration.report.converged;
+        result.converged = result.converged && iteration.report().converged;
         result.cycles =
-          std::max<unsigned int>(result.cycles, iteration.report.cycles.size());
+          std::max<unsigned int>(result.cycles, iteration.report().cycles.size());
         result.counts.push_back(
-          {iteration.state.n_contact(), iteration.state.n_sticking()});
+          {iteration.state().n_contact(), iteration.state().n_sticking()});
     } while (iteration.refine());
 
-    const ContactBoundary<2> &contact  = *iteration.discretization->contact;
-    const VectorType         &residual = iteration.report.residual;
+    const ContactBoundary<2> &contact  = iteration.discretization().contact();
+    const VectorType         &residual = iteration.report().residual;
     double                    largest  = 0;
     for (unsigned int p = 0; p < contact.size(); ++p)
-      if (iteration.state.in_contact(p))
+      if (iteration.state().in_contact(p))
         {
           const double force   = normal_component(contact[p], residual);
           const double measure = contact[p].measure;
@@ -69,7 +70,7 @@ namespace
           result.half_width += measure / 2;
           result.peak_pressure =
             std::max(result.peak_pressure, force / measure);
-          if (iteration.state.sticks(p))
+          if (iteration.state().sticks(p))
             result.stick_width += measure / 2;
           else
             result.cone_deviation = std::max(
@@ -79,8 +80,8 @@ namespace
                 F * force));
         }
     result.cone_deviation /= largest;
-    result.n_contact  = iteration.state.n_contact();
-    result.n_sticking = iteration.state.n_sticking();
+    result.n_contact  = iteration.state().n_contact();
+    result.n_sticking = iteration.state().n_sticking();
     return result;
   }
 

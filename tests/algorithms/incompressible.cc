@@ -13,7 +13,7 @@
 
 #include <tests/support/check.h>
 
-#include "../support/nested_iteration.h"
+#include <tests/support/discretized.h>
 
 using namespace Tests;
 
@@ -30,24 +30,24 @@ namespace
   Errors
   measure(const NestedIteration<2> &iteration, const double power_of_pressure)
   {
-    const Discretization<2> &d        = *iteration.discretization;
-    const Function<2>       &exact    = *iteration.scene.exact_displacement();
-    const Material          &material = iteration.scene.material();
+    const Discretization<2> &d        = iteration.discretization();
+    const Function<2>       &exact    = *iteration.scene().exact_displacement();
+    const Material          &material = iteration.scene().material();
     const bool mean = material.volumetric_strain() == VolumetricStrain::mean;
 
     const QGauss<2>                    quadrature(4);
-    FEValues<2>                        fe_values(d.mapping,
+    FEValues<2>                        fe_values(d.mapping(),
                           d.fe,
                           quadrature,
                           update_gradients | update_quadrature_points |
                             update_JxW_values);
     std::vector<SymmetricTensor<2, 2>> strains(quadrature.size());
     Errors                             errors = {};
-    for (const auto &cell : d.dof_handler.active_cell_iterators())
+    for (const auto &cell : d.dof_handler().active_cell_iterators())
       {
         fe_values.reinit(cell);
         fe_values[FEValuesExtractors::Vector(0)]
-          .get_function_symmetric_gradients(iteration.displacement, strains);
+          .get_function_symmetric_gradients(iteration.displacement(), strains);
         double theta = 0.;
         for (const unsigned int q : fe_values.quadrature_point_indices())
           theta += trace(strains[q]) * fe_values.JxW(q) / cell->measure();
@@ -66,28 +66,28 @@ namespace
     errors.energy = std::sqrt(errors.energy + errors.shear);
     errors.shear  = std::sqrt(errors.shear);
 
-    for (const ContactNode<2> &node : *d.contact)
+    for (const ContactNode<2> &node : d.contact())
       errors.pressure +=
         node.measure *
         std::pow(
-          normal_component(node, iteration.report.residual) / node.measure -
+          normal_component(node, iteration.report().residual) / node.measure -
             0.05 * std::pow(std::max(node.point[0] - 1, 0.), power_of_pressure),
           2);
     errors.pressure = std::sqrt(errors.pressure);
-    errors.estimate = estimate_contact_error(iteration.scene,
-                                             d.mapping,
-                                             d.dof_handler,
-                                             d.hanging,
-                                             *d.constraints,
-                                             *d.contact,
-                                             iteration.displacement,
-                                             iteration.tractions)
+    errors.estimate = estimate_contact_error(iteration.scene(),
+                                             d.mapping(),
+                                             d.dof_handler(),
+                                             d.hanging_nodes(),
+                                             d.constraints(),
+                                             d.contact(),
+                                             iteration.displacement(),
+                                             iteration.tractions())
                         .total;
 
     check_below(
       std::abs(
         compute_exact_error(
-          d.mapping, d.dof_handler, material, exact, iteration.displacement)
+          d.mapping(), d.dof_handler(), material, exact, iteration.displacement())
             .energy /
           errors.energy -
         1.),
@@ -116,11 +116,12 @@ namespace
                       "Solver/Recombined steps=10"});
     NestedIteration<2> iteration(
       read_parameters(SCENES_DIR "/" + scene + ".prm", overrides));
+    iteration.begin();
     std::vector<Errors> errors;
     do
       {
         iteration.solve();
-        check(iteration.report.converged, "  converges");
+        check(iteration.report().converged, "  converges");
         errors.push_back(measure(iteration, power_of_pressure));
     } while (iteration.refine());
     return errors;

@@ -12,7 +12,7 @@
 #include <tests/support/check.h>
 
 #include "../reference/scenes.h"
-#include "../support/nested_iteration.h"
+#include <tests/support/discretized.h>
 
 using namespace Tests;
 
@@ -34,20 +34,21 @@ namespace
   {
     std::cout << "raous" << std::endl;
     NestedIteration<2> iteration(read_parameters(SCENES_DIR "/raous.prm"));
+    iteration.begin();
     do
       {
         iteration.solve();
-        if (!iteration.report.converged)
-          std::cout << "no convergence on level " << iteration.level
+        if (!iteration.report().converged)
+          std::cout << "no convergence on level " << iteration.level()
                     << std::endl;
     } while (iteration.refine());
-    const Discretization<2> &d = *iteration.discretization;
-    std::cout << iteration.mesh->n_active_cells() << " cells" << std::endl;
+    const Discretization<2> &d = iteration.discretization();
+    std::cout << iteration.mesh().n_active_cells() << " cells" << std::endl;
 
     const auto u_x = [&](const double x) {
-      for (const ContactNode<2> &node : *d.contact)
+      for (const ContactNode<2> &node : d.contact())
         if (std::abs(node.point[0] - x) < 1e-9)
-          return iteration.displacement.local_element(2 * node.node);
+          return iteration.displacement().local_element(2 * node.node);
       return 0.;
     };
     const std::vector<std::array<double, 3>> values = {// x in mm; independent
@@ -75,12 +76,12 @@ namespace
     check(from_published < 0.03, "published values to 3 %");
 
     double first_sticking = 1., last_slipping = 0., last_open = 0.;
-    for (unsigned int p = 0; p < d.contact->size(); ++p)
+    for (unsigned int p = 0; p < d.contact().size(); ++p)
       {
-        const double x = (*d.contact)[p].point[0];
-        if (iteration.state.sticks(p))
+        const double x = (d.contact())[p].point[0];
+        if (iteration.state().sticks(p))
           first_sticking = std::min(first_sticking, x);
-        else if (iteration.state.in_contact(p))
+        else if (iteration.state().in_contact(p))
           last_slipping = std::max(last_slipping, x);
         else
           last_open = std::max(last_open, x);
@@ -140,14 +141,14 @@ namespace
         mesh->execute_coarsening_and_refinement();
       }
 
-    const Discretization<2>   discretization(scene, *mesh);
-    const ContactBoundary<2> &contact = *discretization.contact;
-    VectorType                u       = discretization.admissible_start();
+    const Discretized<2>   discretization(scene, *mesh);
+    const ContactBoundary<2> &contact = discretization.contact();
+    VectorType                u       = admissible_start(discretization);
     ContactState              state(contact.size(), true);
     CoulombSolver<2>          solver(
       *discretization.hierarchy, discretization.problem(), parameters.solver);
     const SolverReport report = solver.solve(u, state);
-    discretization.hanging.distribute(u);
+    discretization.hanging_nodes().distribute(u);
 
     double     error = 0, scale = 0;
     const auto points = node_points(discretization);
@@ -203,26 +204,27 @@ namespace
     std::cout << "manufactured" << std::endl;
     NestedIteration<2> iteration(
       read_parameters(SCENES_DIR "/manufactured.prm", {"Refinement/Levels=3"}));
+    iteration.begin();
     double last_energy_error = 0, last_pressure_error = 0;
     do
       {
         iteration.solve();
-        const Discretization<2> &d     = *iteration.discretization;
-        const Function<2>       &exact = *iteration.scene.exact_displacement();
+        const Discretization<2> &d     = iteration.discretization();
+        const Function<2>       &exact = *iteration.scene().exact_displacement();
 
         const QGauss<2>                    quadrature(4);
-        FEValues<2>                        fe_values(d.mapping,
+        FEValues<2>                        fe_values(d.mapping(),
                               d.fe,
                               quadrature,
                               update_gradients | update_quadrature_points |
                                 update_JxW_values);
         std::vector<SymmetricTensor<2, 2>> strains(quadrature.size());
         double                             energy_error = 0;
-        for (const auto &cell : d.dof_handler.active_cell_iterators())
+        for (const auto &cell : d.dof_handler().active_cell_iterators())
           {
             fe_values.reinit(cell);
             fe_values[FEValuesExtractors::Vector(0)]
-              .get_function_symmetric_gradients(iteration.displacement,
+              .get_function_symmetric_gradients(iteration.displacement(),
                                                 strains);
             for (const unsigned int q : fe_values.quadrature_point_indices())
               {
@@ -233,8 +235,8 @@ namespace
                 const SymmetricTensor<2, 2> e =
                   symmetrize(gradient) - strains[q];
                 energy_error +=
-                  (iteration.scene.material().lambda() * trace(e) * trace(e) +
-                   2. * iteration.scene.material().mu() * (e * e)) *
+                  (iteration.scene().material().lambda() * trace(e) * trace(e) +
+                   2. * iteration.scene().material().mu() * (e * e)) *
                   fe_values.JxW(q);
               }
           }
@@ -243,30 +245,30 @@ namespace
         // Nodal forces over measures against p = p0 (x-1)^2_+, in the norm
         // that the measures define; where each zone begins.
         double pressure_error = 0, first_contact = 3, first_sticking = 3;
-        for (unsigned int p = 0; p < d.contact->size(); ++p)
+        for (unsigned int p = 0; p < d.contact().size(); ++p)
           {
-            const ContactNode<2> &node = (*d.contact)[p];
+            const ContactNode<2> &node = (d.contact())[p];
             const double          x    = node.point[0];
             pressure_error += node.measure *
-              std::pow(normal_component(node, iteration.report.residual) /
+              std::pow(normal_component(node, iteration.report().residual) /
                            node.measure -
                          0.05 * std::pow(std::max(x - 1, 0.), 2),
                        2);
-            if (iteration.state.in_contact(p))
+            if (iteration.state().in_contact(p))
               first_contact = std::min(first_contact, x);
-            if (iteration.state.sticks(p))
+            if (iteration.state().sticks(p))
               first_sticking = std::min(first_sticking, x);
           }
         pressure_error = std::sqrt(pressure_error);
 
-        const double h     = 0.25 / (1 << iteration.level);
+        const double h     = 0.25 / (1 << iteration.level());
         const bool   zones = std::abs(first_contact - 1) <= h * 1.001 &&
           std::abs(first_sticking - 2) <= h * 1.001;
         const std::string where =
-          "h = 1/" + std::to_string(4 << iteration.level);
-        check(iteration.report.converged && zones,
+          "h = 1/" + std::to_string(4 << iteration.level());
+        check(iteration.report().converged && zones,
               where + ": zone boundaries within one cell");
-        if (iteration.level > 0)
+        if (iteration.level() > 0)
           {
             const double energy_order =
               std::log2(last_energy_error / energy_error);

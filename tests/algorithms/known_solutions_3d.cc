@@ -10,7 +10,7 @@
 #include <tests/support/check.h>
 
 #include "../reference/scenes_3d.h"
-#include "../support/nested_iteration.h"
+#include <tests/support/discretized.h>
 
 using namespace Tests;
 
@@ -92,7 +92,7 @@ namespace
     unsigned int n      = 0;
     const auto   points = node_points(d);
     for (unsigned int i = 0; i < points.size(); ++i)
-      n += (std::abs(points[i][2]) < tolerance && d.constraints->is_hanging(i));
+      n += (std::abs(points[i][2]) < tolerance && d.constraints().is_hanging(i));
     return n;
   }
 
@@ -132,14 +132,14 @@ namespace
     auto           mesh = make_triangulation<3>();
     make_mesh(scene, patch, *mesh);
 
-    const Discretization<3>   discretization(scene, *mesh);
-    const ContactBoundary<3> &contact = *discretization.contact;
-    VectorType                u       = discretization.admissible_start();
+    const Discretized<3>   discretization(scene, *mesh);
+    const ContactBoundary<3> &contact = discretization.contact();
+    VectorType                u       = admissible_start(discretization);
     ContactState              state(contact.size(), true);
     CoulombSolver<3>          solver(
       *discretization.hierarchy, discretization.problem(), parameters.solver);
     const SolverReport report = solver.solve(u, state);
-    discretization.hanging.distribute(u);
+    discretization.hanging_nodes().distribute(u);
 
     double     error = 0, scale = 0;
     const auto points = node_points(discretization);

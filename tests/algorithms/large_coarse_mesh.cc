@@ -12,7 +12,7 @@
 
 #include <tests/support/check.h>
 
-#include "../support/nested_iteration.h"
+#include <tests/support/discretized.h>
 
 using namespace Tests;
 
@@ -33,11 +33,11 @@ namespace
   void
   print(const NestedIteration<2> &iteration, const std::string &what)
   {
-    const SolverReport &report = iteration.report;
-    std::cout << what << ": " << iteration.mesh->n_cells(0)
-              << " coarse cells of " << iteration.mesh->n_active_cells() << ", "
-              << iteration.state.n_contact() << " nodes in contact, "
-              << iteration.state.n_sticking() << " sticking"
+    const SolverReport &report = iteration.report();
+    std::cout << what << ": " << iteration.mesh().n_cells(0)
+              << " coarse cells of " << iteration.mesh().n_active_cells() << ", "
+              << iteration.state().n_contact() << " nodes in contact, "
+              << iteration.state().n_sticking() << " sticking"
               << (report.converged ? "" : ", not converged") << std::endl;
     check_below(report.certificate.largest(), 1e-6, "certificate");
     check_below(report.cycles.size(), 20, "cycles");
@@ -60,7 +60,8 @@ main(int argc, char **argv)
 
   NestedIteration<2> refined(parameters(
     {"Scene/Subdivisions=5, 5", "Refinement/Initial refinements=6"}));
-  write_mesh(*refined.mesh, "large_coarse_mesh.msh");
+  refined.begin();
+  write_mesh(refined.mesh(), "large_coarse_mesh.msh");
   refined.solve();
   print(refined, "refined");
 
@@ -68,10 +69,11 @@ main(int argc, char **argv)
   of_import.scene.geometry  = GeometryKind::mesh_file;
   of_import.scene.mesh_file = "large_coarse_mesh.msh";
   NestedIteration<2> imported(of_import);
+  imported.begin();
   imported.solve();
   print(imported, "imported");
 
-  check_below(std::abs(imported.report.energy / refined.report.energy - 1.),
+  check_below(std::abs(imported.report().energy / refined.report().energy - 1.),
               1e-9,
               "the same energy");
 }

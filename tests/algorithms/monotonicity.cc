@@ -21,7 +21,7 @@
 
 #include <tests/support/check.h>
 
-#include "../support/nested_iteration.h"
+#include <tests/support/discretized.h>
 #include "../support/random_problem.h"
 
 using namespace Tests;
@@ -74,12 +74,12 @@ namespace
             }
           mesh->execute_coarsening_and_refinement();
         }
-      discretization = std::make_unique<Discretization<dim>>(scene, *mesh);
+      discretization = std::make_unique<Discretized<dim>>(scene, *mesh);
 
-      VectorType         u = discretization->admissible_start();
-      ContactState       state(discretization->contact->size(), true);
-      CoulombSolver<dim> solver(*discretization->hierarchy,
-                                discretization->problem(),
+      VectorType         u = admissible_start(discretization);
+      ContactState       state(discretization.contact().size(), true);
+      CoulombSolver<dim> solver(*discretization.hierarchy,
+                                discretization.problem(),
                                 parameters.solver);
       converged      = solver.solve(u, state).converged;
       length         = u.linfty_norm();
@@ -94,7 +94,7 @@ namespace
     DiscreteProblem<dim>
     problem() const
     {
-      DiscreteProblem<dim> result = discretization->problem();
+      DiscreteProblem<dim> result = discretization.problem();
       result.friction_law         = FrictionLaw::tresca;
       return result;
     }
@@ -102,7 +102,7 @@ namespace
     ContactState
     initial_state() const
     {
-      ContactState state(discretization->contact->size(), true);
+      ContactState state(discretization.contact().size(), true);
       for (unsigned int p = 0; p < state.size(); ++p)
         state.set_normal_force(p, normal_forces[p]);
       return state;
@@ -112,7 +112,7 @@ namespace
     VectorType
     random_direction()
     {
-      const NodalConstraints<dim> &constraints = *discretization->constraints;
+      const NodalConstraints<dim> &constraints = discretization.constraints();
       VectorType                   v(constraints.partitioner());
       for (unsigned int node = 0; node < constraints.n_owned_nodes(); ++node)
         for (unsigned int c = 0; c < dim; ++c)
@@ -126,9 +126,9 @@ namespace
     VectorType
     random_start()
     {
-      VectorType u = discretization->admissible_start();
+      VectorType u = admissible_start(discretization);
       u.add(0.3 * length, random_direction());
-      for (const ContactNode<dim> &node : *discretization->contact)
+      for (const ContactNode<dim> &node : discretization.contact())
         {
           const double excess = normal_component(node, u) - node.gap;
           if (excess > 0)
@@ -155,8 +155,8 @@ namespace
     residual(const VectorType &u) const
     {
       VectorType r(u);
-      discretization->matrix.residual(
-        r.begin(), discretization->forces.begin(), u.begin());
+      discretization.stiffness().blocks().residual(
+        r.begin(), discretization.loads().begin(), u.begin());
       return r;
     }
 
@@ -164,7 +164,7 @@ namespace
     product(const VectorType &v) const
     {
       VectorType Av(v);
-      discretization->matrix.vmult(Av.begin(), v.begin());
+      discretization.stiffness().blocks().vmult(Av.begin(), v.begin());
       return Av;
     }
 
@@ -222,10 +222,10 @@ namespace
     const TrescaFunctional<dim> functional(problem);
     const double                F = problem.friction_coefficient;
     const MonotoneSmoother<dim> smoother(
-      d.matrix, *d.constraints, *d.contact, F);
+      d.stiffness().blocks(), d.constraints(), d.contact(), F);
     Linearization<dim> linearization(
-      d.matrix, *d.constraints, *d.contact, F, TruncationVariant::phases);
-    CoarseCycle<dim> coarse(d.matrix, *d.hierarchy, *d.constraints, cycle, 6);
+      d.stiffness().blocks(), d.constraints(), d.contact(), F, TruncationVariant::phases);
+    CoarseCycle<dim> coarse(d.stiffness().blocks(), *d.hierarchy, d.constraints(), cycle, 6);
 
     double increase_in_sweeps = 0, increase_in_correction = 0,
            increase_in_model = 0, increase_in_step = 0, penetration = -1e300,
@@ -281,7 +281,7 @@ namespace
 
                 // Bounds hold for components of nodes that are not truncated;
                 // a truncated one moves within its free subspace.
-                for (const ContactNode<dim> &node : *d.contact)
+                for (const ContactNode<dim> &node : d.contact())
                   if (linearization.truncation().projector(node.node) ==
                       identity_block<dim>())
                     for (unsigned int i = dim * node.node;
@@ -298,9 +298,9 @@ namespace
                 for (unsigned int p = 0; p < state.size(); ++p)
                   if (state.normal_force(p) > 0 && !state.sticks(p))
                     {
-                      const auto before = slip_of<dim>((*d.contact)[p], u);
+                      const auto before = slip_of<dim>((d.contact())[p], u);
                       const auto after =
-                        before + slip_of<dim>((*d.contact)[p], v);
+                        before + slip_of<dim>((d.contact())[p], v);
                       phases_kept = phases_kept &&
                         after * before >=
                           -1e-13 * fixture.length * before.norm();
@@ -344,7 +344,7 @@ namespace
             compare(increase_in_correction);
             for (unsigned int p = 0; p < state.size(); ++p)
               {
-                const ContactNode<dim> &node = (*d.contact)[p];
+                const ContactNode<dim> &node = (d.contact())[p];
                 if (state.in_contact(p))
                   disturbed = std::max(
                     disturbed, std::abs(normal_component(node, u) - node.gap));
@@ -438,8 +438,8 @@ namespace
                 std::max(certificate,
                          make_certificate<dim>(u,
                                                fixture.residual(u),
-                                               *d.constraints,
-                                               *d.contact,
+                                               d.constraints(),
+                                               d.contact(),
                                                state,
                                                problem.friction_coefficient,
                                                false)
@@ -451,7 +451,7 @@ namespace
                 solution = u;
               else
                 for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-                  if (!d.constraints->is_hanging(i / dim))
+                  if (!d.constraints().is_hanging(i / dim))
                     difference = std::max(
                       difference,
                       std::abs(u.local_element(i) - solution.local_element(i)) /
@@ -491,7 +491,7 @@ namespace
         if (line % 3 == 0)
           for (unsigned int p = 0; p < state.size(); p += 2)
             {
-              const ContactNode<dim> &node = (*d.contact)[p];
+              const ContactNode<dim> &node = (d.contact())[p];
               const auto              u_T  = slip_of<dim>(node, u);
               for (unsigned int t = 1; t < dim; ++t)
                 for (unsigned int c = 0; c < dim; ++c)
@@ -570,7 +570,7 @@ namespace
         penetration = std::max(
           penetration, functional.largest_penetration(w) / fixture.length);
         unsigned int expected = 0;
-        for (const ContactNode<dim> &node : *d.contact)
+        for (const ContactNode<dim> &node : d.contact())
           {
             const bool too_far = normal_component(node, u) +
                 normal_component(node, original) - node.gap >
@@ -594,7 +594,7 @@ namespace
 
         // From a start without contact: as long as possible, no longer.
         VectorType inside(u);
-        for (const ContactNode<dim> &node : *d.contact)
+        for (const ContactNode<dim> &node : d.contact())
           for (unsigned int c = 0; c < dim; ++c)
             inside.local_element(dim * node.node + c) -=
               0.01 * fixture.length * node.normal()[c];
@@ -634,15 +634,15 @@ namespace
     ContactState               state   = fixture.initial_state();
     MonotoneMultigrid<dim> multigrid(*d.hierarchy, problem, SolverSettings());
     multigrid.solve(u, state, false);
-    Linearization<dim> linearization(d.matrix,
-                                     *d.constraints,
-                                     *d.contact,
+    Linearization<dim> linearization(d.stiffness().blocks(),
+                                     d.constraints(),
+                                     d.contact(),
                                      problem.friction_coefficient,
                                      TruncationVariant::phases);
     linearization.update(u, state);
     const Truncation<dim> &truncation = linearization.truncation();
     CoarseCycle<dim>       coarse(
-      d.matrix, *d.hierarchy, *d.constraints, Cycle::V, 6);
+      d.stiffness().blocks(), *d.hierarchy, d.constraints(), Cycle::V, 6);
     coarse.update(truncation);
 
     VectorType b = fixture.random_direction();
@@ -671,10 +671,10 @@ namespace
     const auto precondition = [&](const VectorType &r) {
       VectorType v(r), w(r);
       coarse.apply(v, r);
-      for (unsigned int node = 0; node < d.constraints->n_owned_nodes(); ++node)
-        if (!d.constraints->is_hanging(node))
+      for (unsigned int node = 0; node < d.constraints().n_owned_nodes(); ++node)
+        if (!d.constraints().is_hanging(node))
           {
-            const double *block  = d.matrix.block(d.matrix.row_begin(node));
+            const double *block  = d.stiffness().blocks().block(d.stiffness().blocks().row_begin(node));
             const double  factor = 1. / trace<dim>(block);
             for (unsigned int c = 0; c < dim; ++c)
               w.local_element(dim * node + c) *= factor;
@@ -776,8 +776,8 @@ namespace
     const VectorType r     = truncated_residual(x);
     VectorType       v     = precondition(r);
     VectorType       Av    = fixture.product(v);
-    unsigned int     moved = (*d.contact)[0].node;
-    for (const ContactNode<dim> &node : *d.contact)
+    unsigned int     moved = (d.contact())[0].node;
+    for (const ContactNode<dim> &node : d.contact())
       for (unsigned int c = 0; c < dim; ++c)
         if (std::abs(x.local_element(dim * node.node + c)) > 0)
           moved = node.node;
@@ -845,6 +845,7 @@ main(int argc, char **argv)
   std::cout << "cycles of nested iteration" << std::endl;
   NestedIteration<2> iteration(
     read_parameters(SCENES_DIR "/hertz.prm", {"Refinement/Maximum dofs=2000"}));
+  iteration.begin();
   std::array<unsigned int, 2> cycles = {{0, 0}};
   do
     {

@@ -79,10 +79,10 @@ namespace
     VectorType
     displacement(const double u_x, const double u_y) const
     {
-      VectorType u(d.constraints->partitioner());
-      d.constraints->impose(u);
-      u.local_element(2 * (*d.contact)[0].node)     = u_x;
-      u.local_element(2 * (*d.contact)[0].node + 1) = u_y;
+      VectorType u(d.constraints().partitioner());
+      d.constraints().impose(u);
+      u.local_element(2 * (d.contact())[0].node)     = u_x;
+      u.local_element(2 * (d.contact())[0].node + 1) = u_y;
       return u;
     }
 
@@ -113,21 +113,21 @@ main(int argc, char *argv[])
   std::cout << scene.warning() << std::endl;
   const auto mesh = make_triangulation<2>();
   scene.make_coarse_mesh(*mesh);
-  const Discretization<2> d(scene, *mesh);
+  const Discretized<2> d(scene, *mesh);
   const Node              node      = {d};
   const auto              solutions = all_solutions(scene.material());
-  check(d.contact->size() == 1, "there is one contact node");
+  check(d.contact().size() == 1, "there is one contact node");
 
   // Each of them satisfies the discrete law.
   for (const Solution &s : solutions)
     {
       const VectorType u = node.displacement(s.u_t, s.u_y);
       VectorType       residual(u);
-      d.matrix.residual(residual.begin(), d.forces.begin(), u.begin());
+      d.stiffness().blocks().residual(residual.begin(), d.loads().begin(), u.begin());
       const Certificate certificate = make_certificate<2>(u,
                                                           residual,
-                                                          *d.constraints,
-                                                          *d.contact,
+                                                          d.constraints(),
+                                                          d.contact(),
                                                           ContactState(1, true),
                                                           F,
                                                           true);

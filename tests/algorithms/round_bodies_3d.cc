@@ -11,7 +11,7 @@
 #include <tests/support/check.h>
 
 #include "../reference/dense_contact_3d.h"
-#include "../support/nested_iteration.h"
+#include <tests/support/discretized.h>
 
 using namespace Tests;
 
@@ -72,7 +72,7 @@ namespace
     };
 
     Body crossing_rods  = parallel_rods;
-    crossing_rods.scene = "crossing-rods";
+    crossing_rods.scene() = "crossing-rods";
     crossing_rods.push  = {0, -.08, 0};
     crossing_rods.gap   = [](const Vector &x, const Vector &n) {
       double gap = infinity;
@@ -85,7 +85,7 @@ namespace
     // Pushed harder than in the scene, so that a coarse mesh has some nodes in
     // contact.
     Body half_ball;
-    half_ball.scene   = "half-ball";
+    half_ball.scene()   = "half-ball";
     half_ball.push    = {0, 0, -.3};
     half_ball.is_held = [](const Vector &x) { return x[2] > -1e-9; };
     half_ball.radial  = [](const Vector &x) { return x; };
@@ -156,15 +156,16 @@ namespace
                        "Refinement/Initial refinements=1",
                        "Solver/Inner tolerance=1e-12"});
     NestedIteration<3>                iteration(parameters);
-    const Discretization<3>          &d = *iteration.discretization;
+    iteration.begin();
+    const Discretization<3>          &d = iteration.discretization();
     const Reference::ContactProblem3D problem =
-      make_reference(*iteration.mesh, body, nu, F);
+      make_reference(iteration.mesh(), body, nu, F);
     const Reference::ContactSolution3D exact = Reference::solve(problem);
 
-    std::vector<unsigned int> vertex(d.constraints->n_nodes());
-    for (const auto &cell : d.dof_handler.active_cell_iterators())
+    std::vector<unsigned int> vertex(d.constraints().n_nodes());
+    for (const auto &cell : d.dof_handler().active_cell_iterators())
       for (const unsigned int v : cell->vertex_indices())
-        vertex[d.constraints->node_of_dof(cell->vertex_dof_index(v, 0))] =
+        vertex[d.constraints().node_of_dof(cell->vertex_dof_index(v, 0))] =
           cell->vertex_index(v);
     std::vector<int> contact_number(problem.mesh.nodes.size(), -1);
     for (unsigned int p = 0; p < problem.contact.size(); ++p)
@@ -179,7 +180,7 @@ namespace
     bool         converged          = true;
     double       displacement_error = 0, force_error = 0, geometry_error = 0;
     unsigned int n_different =
-      (d.contact->size() == problem.contact.size() ? 0 : 1);
+      (d.contact().size() == problem.contact.size() ? 0 : 1);
     for (const CoarseCorrection correction :
          {CoarseCorrection::truncated, CoarseCorrection::monotone})
       {
@@ -201,9 +202,9 @@ namespace
                          std::abs(-report.residual.local_element(3 * i + c) -
                                   exact.residual[j]));
             }
-        for (unsigned int p = 0; p < d.contact->size(); ++p)
+        for (unsigned int p = 0; p < d.contact().size(); ++p)
           {
-            const ContactNode<3> &node = (*d.contact)[p];
+            const ContactNode<3> &node = (d.contact())[p];
             const int             q    = contact_number[vertex[node.node]];
             if (q < 0)
               {
@@ -240,7 +241,7 @@ namespace
   unsigned int
   asymmetry(const NestedIteration<3> &iteration, double &difference)
   {
-    const Discretization<3>    &d      = *iteration.discretization;
+    const Discretization<3>    &d      = iteration.discretization();
     const std::vector<Point<3>> points = node_points(d);
     const auto                  key    = [](const Point<3> &p) {
       return std::array<long, 3>{{std::lround(1e7 * p[0]),
@@ -251,10 +252,10 @@ namespace
     for (unsigned int i = 0; i < points.size(); ++i)
       node_of[key(points[i])] = i;
     std::map<unsigned int, unsigned int> contact_of;
-    for (unsigned int p = 0; p < d.contact->size(); ++p)
-      contact_of[(*d.contact)[p].node] = p;
+    for (unsigned int p = 0; p < d.contact().size(); ++p)
+      contact_of[(d.contact())[p].node] = p;
 
-    const auto  &u = iteration.displacement, &f = iteration.report.residual;
+    const auto  &u = iteration.displacement(), &f = iteration.report().residual;
     unsigned int n_different = 0;
     double       u_scale = 0, f_scale = 0, u_error = 0, f_error = 0;
     for (unsigned int i = 0; i < points.size(); ++i)
@@ -285,10 +286,10 @@ namespace
           if ((p == contact_of.end()) != (q == contact_of.end()))
             ++n_different;
           else if (p != contact_of.end())
-            n_different += (iteration.state.in_contact(p->second) !=
-                              iteration.state.in_contact(q->second) ||
-                            iteration.state.sticks(p->second) !=
-                              iteration.state.sticks(q->second));
+            n_different += (iteration.state().in_contact(p->second) !=
+                              iteration.state().in_contact(q->second) ||
+                            iteration.state().sticks(p->second) !=
+                              iteration.state().sticks(q->second));
         }
     difference = std::max(u_error / u_scale, f_error / f_scale);
     return n_different;
@@ -302,10 +303,10 @@ namespace
   double
   imbalance(const NestedIteration<3> &iteration)
   {
-    const Discretization<3>    &d      = *iteration.discretization;
+    const Discretization<3>    &d      = iteration.discretization();
     const std::vector<Point<3>> points = node_points(d);
     std::vector<bool>           loaded(points.size(), false);
-    for (const ContactNode<3> &node : *d.contact)
+    for (const ContactNode<3> &node : d.contact())
       loaded[node.node] = true;
 
     Tensor<1, 3> force, moment;
@@ -313,12 +314,12 @@ namespace
     bool         nothing_hangs = true;
     for (unsigned int i = 0; i < points.size(); ++i)
       {
-        nothing_hangs = nothing_hangs && !d.constraints->is_hanging(i);
-        if (!loaded[i] && !d.constraints->is_fixed(i))
+        nothing_hangs = nothing_hangs && !d.constraints().is_hanging(i);
+        if (!loaded[i] && !d.constraints().is_fixed(i))
           continue;
         Tensor<1, 3> f;
         for (unsigned int c = 0; c < 3; ++c)
-          f[c] = iteration.report.residual.local_element(3 * i + c);
+          f[c] = iteration.report().residual.local_element(3 * i + c);
         force += f;
         moment += cross_product_3d(points[i], f);
         sum += f.norm();
@@ -335,16 +336,17 @@ namespace
     Parameters parameters =
       read_parameters(SCENES_3D_DIR "/" + scene + ".prm", overrides);
     NestedIteration<3> iteration(parameters);
+    iteration.begin();
     bool               converged = true;
     unsigned int       n_cycles = 0, n_different = 0;
     double             largest_difference = 0, largest_imbalance = 0;
     do
       {
         iteration.solve();
-        converged = converged && iteration.report.converged;
-        if (iteration.level >= 2)
+        converged = converged && iteration.report().converged;
+        if (iteration.level() >= 2)
           n_cycles =
-            std::max<unsigned int>(n_cycles, iteration.report.cycles.size());
+            std::max<unsigned int>(n_cycles, iteration.report().cycles.size());
         double             difference;
         const unsigned int n = asymmetry(iteration, difference);
         n_different += n;

@@ -12,7 +12,7 @@
 
 #include <tests/support/check.h>
 
-#include "../support/nested_iteration.h"
+#include <tests/support/discretized.h>
 #include "../support/random_problem.h"
 
 using namespace Tests;
@@ -89,9 +89,9 @@ namespace
     const auto     mesh = make_triangulation<2>();
     scene.make_coarse_mesh(*mesh);
     mesh->refine_global(parameters.refinement.initial_refinements);
-    const Discretization<2> d(scene, *mesh);
-    u     = d.admissible_start();
-    state = ContactState(d.contact->size(), d.problem().has_friction());
+    const Discretized<2> d(scene, *mesh);
+    u     = admissible_start(d);
+    state = ContactState(d.contact().size(), d.problem().has_friction());
     SafeguardedSolver<2> solver(*d.hierarchy, d.problem(), parameters.solver);
     return solver.solve(u, state);
   }
@@ -146,12 +146,13 @@ namespace
     std::cout << "Much friction" << std::endl;
     NestedIteration<2>       nest(read_parameters(
       SCENES_DIR "/raous.prm", {"Contact/Friction coefficient=10"}));
-    const Discretization<2> *d        = nest.discretization.get();
+    nest.begin();
+    const Discretization<2> *d        = nest.discretization().get();
     unsigned int             failures = 0, solved = 0;
     std::string              last;
     do
       {
-        d = nest.discretization.get();
+        d = nest.discretization().get();
         VectorType     u;
         ContactState   state    = nest.make_guess(u);
         SolverSettings settings = nest.parameters.solver;
@@ -159,14 +160,14 @@ namespace
         CoulombSolver<2> plain(*d->hierarchy, d->problem(), settings);
         failures += !plain.solve(u, state).converged;
 
-        nest.displacement   = nest.guess;
-        nest.state          = nest.make_guess(nest.displacement);
+        nest.displacement()   = nest.guess();
+        nest.state()          = nest.make_guess(nest.displacement());
         settings.safeguards = true;
         SafeguardedSolver<2> safe(*d->hierarchy, d->problem(), settings);
-        nest.report = safe.solve(nest.displacement, nest.state);
-        solved += nest.report.converged;
-        if (!nest.report.attempts.empty())
-          last = nest.report.attempts.back().name;
+        nest.report() = safe.solve(nest.displacement(), nest.state());
+        solved += nest.report().converged;
+        if (!nest.report().attempts.empty())
+          last = nest.report().attempts.back().name;
         nest.accept();
     } while (nest.refine());
     check(failures > 0, "without safeguards there are meshes without solution");

@@ -13,7 +13,7 @@
 
 #include <tests/support/check.h>
 
-#include "../support/nested_iteration.h"
+#include <tests/support/discretized.h>
 
 using namespace Tests;
 
@@ -29,6 +29,7 @@ main(int argc, char **argv)
                      "Refinement/Initial refinements=1",
                      "Refinement/Levels=2",
                      "Solver/Maximum cycles=" + std::to_string(limit)}));
+  iteration.begin();
 
   // Cycles per level; the limit if that was not enough.
   using Variant = std::pair<TruncationVariant, CoarseCorrection>;
@@ -54,9 +55,9 @@ main(int argc, char **argv)
           }
       iteration.solve();
   } while (iteration.refine());
-  std::cout << iteration.discretization->dof_handler.n_dofs()
-            << " degrees of freedom, " << iteration.state.n_contact()
-            << " nodes in contact, " << iteration.state.n_sticking() << " stick"
+  std::cout << iteration.discretization().dof_handler().n_dofs()
+            << " degrees of freedom, " << iteration.state().n_contact()
+            << " nodes in contact, " << iteration.state().n_sticking() << " stick"
             << std::endl;
 
   const auto at_most = [&](const Variant &variant, const unsigned int bound) {

@@ -23,6 +23,7 @@ namespace
     // Gauss-Seidel is far from the solution when its increments are small.
     overrides.push_back("Solver/Inner tolerance=1e-12");
     NestedIteration<dim> nest(read_parameters(file, overrides));
+    nest.begin();
     do
       nest.solve();
     while (nest.refine());
@@ -30,8 +31,8 @@ namespace
               << ", F = " << nest.parameters.contact.friction_coefficient
               << std::endl;
     if (both_phases)
-      check(nest.state.n_sticking() > 0 &&
-              nest.state.n_sticking() < nest.state.n_contact(),
+      check(nest.state().n_sticking() > 0 &&
+              nest.state().n_sticking() < nest.state().n_contact(),
             "nodes stick and slide");
 
     Contest<dim> contest(nest, 0., 60.);
@@ -44,7 +45,7 @@ namespace
         if (other.size() == 0)
           other = contest.solution();
         // Values at hanging nodes are nobody's business.
-        const auto &constraints = *nest.discretization->constraints;
+        const auto &constraints = nest.discretization().constraints();
         double      difference  = 0;
         for (unsigned int node = 0; node < constraints.n_owned_nodes(); ++node)
           if (!constraints.is_hanging(node))
@@ -53,8 +54,8 @@ namespace
                 std::max(difference,
                          std::abs(other.local_element(i) -
                                   contest.solution().local_element(i)));
-        check(result.converged && result.n_contact == nest.state.n_contact() &&
-                result.n_sticking == nest.state.n_sticking(),
+        check(result.converged && result.n_contact == nest.state().n_contact() &&
+                result.n_sticking == nest.state().n_sticking(),
               name + ": certified, and the same states");
         if (name.compare(0, 6, "newton") == 0)
           check_below(result.iterations, 12, name + ": few steps");
@@ -74,11 +75,12 @@ namespace
     NestedIteration<2> nest(read_parameters(
       SCENES_DIR "/hertz.prm",
       {"Refinement/Maximum dofs=400", "Solver/Inner tolerance=1e-12"}));
+    nest.begin();
     double             n_coarser = 0;
     do
       {
-        if (nest.level > 0)
-          n_coarser = nest.discretization->dof_handler.n_dofs();
+        if (nest.level() > 0)
+          n_coarser = nest.discretization().dof_handler().n_dofs();
         nest.solve();
     } while (nest.refine());
     Contest<2>         contest(nest, n_coarser, 60.);

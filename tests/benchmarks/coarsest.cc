@@ -8,7 +8,7 @@
 
 #include <deal.II/base/timer.h>
 
-#include <tests/support/nested_iteration.h>
+#include <tests/support/discretized.h>
 
 #include <cmath>
 #include <cstdio>
@@ -34,23 +34,24 @@ namespace Benchmark
                       {"Scene/Subdivisions=" + subdivisions,
                        "Refinement/Initial refinements=0",
                        "Refinement/Levels=0"}));
+    nest.begin();
     const double               setup = timer.wall_time();
-    const Discretization<dim> &d     = *nest.discretization;
-    const LevelMatrices<dim>   matrices(d.matrix, *d.hierarchy, *d.constraints);
-    VectorType                 c(d.dof_handler.locally_owned_dofs(),
-                 Compatibility::mpi_communicator(d.dof_handler));
+    const Discretization<dim> &d     = nest.discretization();
+    const LevelMatrices<dim>   matrices(d.stiffness().blocks(), *d.hierarchy, d.constraints());
+    VectorType                 c(d.dof_handler().locally_owned_dofs(),
+                 Compatibility::mpi_communicator(d.dof_handler()));
     VectorType                 rhs(c);
     for (unsigned int i = 0; i < rhs.locally_owned_size(); ++i)
-      rhs.local_element(i) = d.constraints->is_prescribed(i / dim, i % dim)
+      rhs.local_element(i) = d.constraints().is_prescribed(i / dim, i % dim)
         ? 0.
         : 1. + .5 * std::sin(.01 * i * i);
 
-    std::printf("%8u %7.2f |", d.dof_handler.n_dofs(), setup);
+    std::printf("%8u %7.2f |", d.dof_handler().n_dofs(), setup);
     for (const CoarsestMethod method :
          {CoarsestMethod::direct, CoarsestMethod::algebraic_multigrid})
       {
         const bool is_direct = (method == CoarsestMethod::direct);
-        if (is_direct && d.dof_handler.n_dofs() > largest)
+        if (is_direct && d.dof_handler().n_dofs() > largest)
           {
             std::printf("       -       -      -       - |");
             continue;
@@ -75,7 +76,7 @@ namespace Benchmark
         AssertThrow(report.converged, ExcMessage("No convergence"));
         std::printf(" %6u %7.3f%s",
                     static_cast<unsigned int>(report.cycles.size()),
-                    nest.setup_seconds + nest.solve_seconds,
+                    nest.setup_seconds() + nest.solve_seconds(),
                     is_direct ? " |" : "\n");
         std::fflush(stdout);
       }

@@ -14,7 +14,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <tests/benchmarks/bonded.h>
-#include <tests/support/nested_iteration.h>
+#include <tests/support/discretized.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -76,10 +76,10 @@ namespace Benchmark
                   const ContactState        &solution_state)
   {
     const auto                 problem = d.problem();
-    const ContactBoundary<dim> nothing(d.mapping,
-                                       d.dof_handler,
-                                       d.hanging,
-                                       *d.constraints,
+    const ContactBoundary<dim> nothing(d.mapping(),
+                                       d.dof_handler(),
+                                       d.hanging_nodes(),
+                                       d.constraints(),
                                        numbers::invalid_boundary_id,
                                        Obstacle<dim>(),
                                        ContactNormal::body);
@@ -151,28 +151,29 @@ namespace Benchmark
                 " linear   solve | ratio: solve, sweep\n");
 
     NestedIteration<dim> nest(parameters);
+    nest.begin();
     MultigridCost        cost;
     double               seconds;
     do
       {
         nest.solve();
-        demand_convergence(nest.report);
+        demand_convergence(nest.report());
         cost                               = nest.cost;
-        seconds                            = nest.solve_seconds;
-        const Discretization<dim> &d       = *nest.discretization;
+        seconds                            = nest.solve_seconds();
+        const Discretization<dim> &d       = nest.discretization();
         const auto                 problem = d.problem();
 
         const NodalConstraints<dim> bonded =
-          bond(problem, nest.displacement, nest.state);
-        const ContactBoundary<dim> nothing(d.mapping,
-                                           d.dof_handler,
-                                           d.hanging,
+          bond(problem, nest.displacement(), nest.state());
+        const ContactBoundary<dim> nothing(d.mapping(),
+                                           d.dof_handler(),
+                                           d.hanging_nodes(),
                                            bonded,
                                            numbers::invalid_boundary_id,
                                            Obstacle<dim>(),
                                            ContactNormal::body);
         const LevelHierarchy<dim>  hierarchy(
-          d.dof_handler, bonded, problem.matrix);
+          d.dof_handler(), bonded, problem.matrix);
         CoulombSolver<dim> linear_solver(hierarchy,
                                          {problem.matrix,
                                           problem.forces,
@@ -190,20 +191,20 @@ namespace Benchmark
         const double       linear_solve = timer.wall_time();
         demand_convergence(linear);
 
-        const unsigned int n_dofs = d.dof_handler.n_dofs();
+        const unsigned int n_dofs = d.dof_handler().n_dofs();
         std::printf("%8u %8u %7u | %6u %7.3f  %7.3f  %6.1f%% | %6u %7.3f | "
                     "%12.2f %6.2f\n",
                     n_dofs,
-                    nest.state.n_contact(),
-                    nest.state.n_sticking(),
-                    static_cast<unsigned int>(nest.report.cycles.size()),
+                    nest.state().n_contact(),
+                    nest.state().n_sticking(),
+                    static_cast<unsigned int>(nest.report().cycles.size()),
                     seconds,
                     1e6 * seconds / n_dofs,
                     100. * cost.matrix_updates / seconds,
                     static_cast<unsigned int>(linear.cycles.size()),
                     linear_solve,
                     seconds / linear_solve,
-                    ratio_of_sweeps(d, nest.displacement, nest.state));
+                    ratio_of_sweeps(d, nest.displacement(), nest.state()));
         std::fflush(stdout);
     } while (nest.refine());
 
@@ -216,13 +217,13 @@ namespace Benchmark
                 100. * cost.line_search / seconds);
 
     // What holds the memory.
-    const Discretization<dim> &d = *nest.discretization;
+    const Discretization<dim> &d = nest.discretization();
     const CoulombSolver<dim>   solver(
       *d.hierarchy, d.problem(), parameters.solver);
-    const double n_dofs = d.dof_handler.n_dofs();
+    const double n_dofs = d.dof_handler().n_dofs();
     std::printf("bytes per dof: leaf matrix %.0f, level hierarchy %.0f, "
                 "smoother and level matrices %.0f; peak of the process %.0f\n",
-                d.matrix.memory_consumption() / n_dofs,
+                d.stiffness().blocks().memory_consumption() / n_dofs,
                 d.hierarchy->memory_consumption() / n_dofs,
                 solver.multigrid().memory_consumption() / n_dofs,
                 peak_memory() / n_dofs);
@@ -233,7 +234,7 @@ namespace Benchmark
                 "%.0f%% of it\n\n",
                 triad * 1e-9,
                 100. *
-                  sweep_bandwidth(d.problem(), nest.displacement, nest.state) /
+                  sweep_bandwidth(d.problem(), nest.displacement(), nest.state()) /
                   triad);
   }
 } // namespace Benchmark

@@ -3,7 +3,7 @@
 
 #include <common/input_error.h>
 
-#include <tests/support/nested_iteration.h>
+#include <tests/support/discretized.h>
 
 #include <deal.II/grid/grid_tools.h>
 
@@ -31,37 +31,37 @@ namespace Benchmark
   void
   set_guess(NestedIteration<dim> &nest, const std::string &name)
   {
-    const Discretization<dim> &d = *nest.discretization;
-    VectorType                 prescribed(d.constraints->partitioner());
-    d.constraints->impose(prescribed);
+    const Discretization<dim> &d = nest.discretization();
+    VectorType                 prescribed(d.constraints().partitioner());
+    d.constraints().impose(prescribed);
     double size = prescribed.linfty_norm();
     if (!(size > 0))
-      size = 1e-3 * GridTools::diameter(*nest.mesh);
+      size = 1e-3 * GridTools::diameter(nest.mesh());
 
-    nest.guess           = 0.;
+    nest.guess()           = 0.;
     nest.guess_tractions = 0.;
     if (name == "random")
       {
         std::mt19937 random(1);
-        for (unsigned int i = 0; i < nest.guess.locally_owned_size(); ++i)
-          nest.guess.local_element(i) =
+        for (unsigned int i = 0; i < nest.guess().locally_owned_size(); ++i)
+          nest.guess().local_element(i) =
             size * (2. * random() / std::mt19937::max() - 1.);
       }
     else if (name == "inside")
-      for (const ContactNode<dim> &node : *d.contact)
+      for (const ContactNode<dim> &node : d.contact())
         for (unsigned int c = 0; c < dim; ++c)
           {
-            nest.guess.local_element(dim * node.node + c) =
+            nest.guess().local_element(dim * node.node + c) =
               100 * size * node.normal()[c];
             nest.guess_tractions.local_element(dim * node.node + c) = -1e3 *
               nest.parameters.material.youngs_modulus() * node.normal()[c];
           }
     else if (name == "lifted")
       {
-        if (d.contact->size() > 0)
-          for (unsigned int i = 0; i < nest.guess.locally_owned_size(); ++i)
-            nest.guess.local_element(i) =
-              -10 * size * (*d.contact)[0].normal()[i % dim];
+        if (d.contact().size() > 0)
+          for (unsigned int i = 0; i < nest.guess().locally_owned_size(); ++i)
+            nest.guess().local_element(i) =
+              -10 * size * (d.contact())[0].normal()[i % dim];
       }
     else if (name != "zero")
       throw InputError("There is no guess '" + name +

@@ -41,7 +41,7 @@
 
 #include <common/estimate/exact_error.h>
 #include <common/output/level_records.h>
-#include <tests/support/nested_iteration.h>
+#include <tests/support/discretized.h>
 
 #include <array>
 #include <cmath>
@@ -126,11 +126,11 @@ namespace Benchmark
     on(const Discretization<dim> &d) const
     {
       Interpolated result;
-      result.displacement.reinit(d.constraints->partitioner());
-      result.tractions.reinit(d.constraints->partitioner());
-      result.face_size.assign(d.constraints->n_nodes(), 0.);
-      for (const auto &cell : d.dof_handler.cell_iterators_on_level(0))
-        descend(cell, nullptr, *d.constraints, result);
+      result.displacement.reinit(d.constraints().partitioner());
+      result.tractions.reinit(d.constraints().partitioner());
+      result.face_size.assign(d.constraints().n_nodes(), 0.);
+      for (const auto &cell : d.dof_handler().cell_iterators_on_level(0))
+        descend(cell, nullptr, d.constraints(), result);
       return result;
     }
 
@@ -215,10 +215,10 @@ namespace Benchmark
   energy_norm(const Discretization<dim> &d, const VectorType &v)
   {
     VectorType Av(v);
-    d.matrix.vmult(Av.begin(), v.begin());
+    d.stiffness().blocks().vmult(Av.begin(), v.begin());
     double square = 0;
-    for (unsigned int i = 0; i < d.constraints->n_owned_nodes(); ++i)
-      if (!d.constraints->is_hanging(i))
+    for (unsigned int i = 0; i < d.constraints().n_owned_nodes(); ++i)
+      if (!d.constraints().is_hanging(i))
         for (unsigned int c = 0; c < dim; ++c)
           square +=
             v.local_element(dim * i + c) * Av.local_element(dim * i + c);
@@ -269,7 +269,8 @@ namespace Benchmark
     run()
     {
       NestedIteration<dim> nest(parameters);
-      const bool           exact = nest.scene.exact_displacement() != nullptr;
+      nest.begin();
+      const bool           exact = nest.scene().exact_displacement() != nullptr;
       if (exact && options.half_widths.empty())
         throw InputError(
           "A scene with an exact solution needs "
@@ -283,10 +284,10 @@ namespace Benchmark
           if (exact)
             compare_with_exact(nest);
           else
-            functions.emplace_back(nest.discretization->dof_handler,
-                                   nest.scene.contact_boundary_id(),
-                                   nest.displacement,
-                                   nest.tractions);
+            functions.emplace_back(nest.discretization().dof_handler(),
+                                   nest.scene().contact_boundary_id(),
+                                   nest.displacement(),
+                                   nest.tractions());
           clock.start();
           another = nest.refine();
         }
@@ -309,7 +310,7 @@ namespace Benchmark
                         sizeof text,
                         "%u dofs, estimated error %.6e",
                         static_cast<unsigned int>(
-                          nest.discretization->dof_handler.n_dofs()),
+                          nest.discretization().dof_handler().n_dofs()),
                         estimate(nest));
           reference = text;
         }
@@ -328,18 +329,18 @@ namespace Benchmark
     solve(NestedIteration<dim> &nest)
     {
       nest.solve();
-      const unsigned int n_dofs = nest.discretization->dof_handler.n_dofs();
+      const unsigned int n_dofs = nest.discretization().dof_handler().n_dofs();
       std::printf("%s %s level %2u: %8u dofs, %3u cycles, %8.2f s\n",
                   parameters.name.c_str(),
                   strategy().c_str(),
-                  nest.level,
+                  nest.level(),
                   n_dofs,
-                  static_cast<unsigned int>(nest.report.cycles.size()),
+                  static_cast<unsigned int>(nest.report().cycles.size()),
                   clock.wall_time());
       std::fflush(stdout);
       AssertThrow(
-        nest.report.converged,
-        ExcMessage("Not converged: " + nest.report.certificate.describe()));
+        nest.report().converged,
+        ExcMessage("Not converged: " + nest.report().certificate.describe()));
     }
 
     std::string
@@ -353,29 +354,29 @@ namespace Benchmark
     double
     estimate(const NestedIteration<dim> &nest) const
     {
-      const Discretization<dim> &d = *nest.discretization;
-      return estimate_contact_error(nest.scene,
-                                    d.mapping,
-                                    d.dof_handler,
-                                    d.hanging,
-                                    *d.constraints,
-                                    *d.contact,
-                                    nest.displacement,
-                                    nest.tractions)
+      const Discretization<dim> &d = nest.discretization();
+      return estimate_contact_error(nest.scene(),
+                                    d.mapping(),
+                                    d.dof_handler(),
+                                    d.hanging_nodes(),
+                                    d.constraints(),
+                                    d.contact(),
+                                    nest.displacement(),
+                                    nest.tractions())
         .relative();
     }
 
     LevelRecord
     record(const NestedIteration<dim> &nest) const
     {
-      const Discretization<dim> &d = *nest.discretization;
-      return make_level_records(nest.level,
-                                d.dof_handler,
-                                *d.constraints,
-                                *d.contact,
-                                nest.displacement,
-                                nest.state,
-                                nest.report)
+      const Discretization<dim> &d = nest.discretization();
+      return make_level_records(nest.level(),
+                                d.dof_handler(),
+                                d.constraints(),
+                                d.contact(),
+                                nest.displacement(),
+                                nest.state(),
+                                nest.report())
         .level;
     }
 
@@ -388,7 +389,7 @@ namespace Benchmark
       row.dofs               = level.dofs;
       row.cycles             = level.cycles;
       row.total_seconds      = clock.wall_time();
-      row.solve_seconds      = nest.solve_seconds;
+      row.solve_seconds      = nest.solve_seconds();
       row.contact_half_width = level.contact_half_width;
       row.stick_half_width   = level.stick_half_width;
       row.estimated_error    = estimate(nest);
@@ -398,31 +399,31 @@ namespace Benchmark
     void
     compare_with_exact(const NestedIteration<dim> &nest)
     {
-      const Discretization<dim> &d     = *nest.discretization;
+      const Discretization<dim> &d     = nest.discretization();
       const auto                 error = [&](const VectorType &v) {
-        return compute_exact_error(d.mapping,
-                                   d.dof_handler,
-                                   nest.scene.material(),
-                                   *nest.scene.exact_displacement(),
+        return compute_exact_error(d.mapping(),
+                                   d.dof_handler(),
+                                   nest.scene().material(),
+                                   *nest.scene().exact_displacement(),
                                    v)
           .energy;
       };
-      VectorType zero(nest.displacement);
+      VectorType zero(nest.displacement());
       zero = 0.;
       zero.update_ghost_values();
-      rows.back().energy_error = error(nest.displacement) / error(zero);
+      rows.back().energy_error = error(nest.displacement()) / error(zero);
 
-      const auto sizes = CoarseFunctions<dim>(d.dof_handler,
-                                              nest.scene.contact_boundary_id(),
-                                              nest.displacement,
-                                              nest.tractions)
+      const auto sizes = CoarseFunctions<dim>(d.dof_handler(),
+                                              nest.scene().contact_boundary_id(),
+                                              nest.displacement(),
+                                              nest.tractions())
                            .on(d)
                            .face_size;
       double difference = 0, norm = 0;
-      for (const ContactNode<dim> &node : *d.contact)
+      for (const ContactNode<dim> &node : d.contact())
         {
-          const double p = exact_pressure(nest.scene, node);
-          const double e = pressure(node, nest.tractions) - p;
+          const double p = exact_pressure(nest.scene(), node);
+          const double e = pressure(node, nest.tractions()) - p;
           difference += node.measure * sizes[node.node] * e * e;
           norm += node.measure * p * p;
         }
@@ -433,7 +434,7 @@ namespace Benchmark
     void
     compare_with_reference(const NestedIteration<dim> &nest)
     {
-      const Discretization<dim> &d     = *nest.discretization;
+      const Discretization<dim> &d     = nest.discretization();
       const LevelRecord          level = record(nest);
       contact_half_width               = level.contact_half_width;
       stick_half_width                 = level.stick_half_width;
@@ -444,20 +445,20 @@ namespace Benchmark
         }
 
       double norm_of_pressure = 0;
-      for (const ContactNode<dim> &node : *d.contact)
+      for (const ContactNode<dim> &node : d.contact())
         norm_of_pressure +=
-          node.measure * std::pow(pressure(node, nest.tractions), 2);
-      const double norm = energy_norm(d, nest.displacement);
+          node.measure * std::pow(pressure(node, nest.tractions()), 2);
+      const double norm = energy_norm(d, nest.displacement());
       for (unsigned int k = 0; k < rows.size(); ++k)
         {
           auto of_level = functions[k].on(d);
-          of_level.displacement -= nest.displacement;
+          of_level.displacement -= nest.displacement();
           rows[k].energy_error = energy_norm(d, of_level.displacement) / norm;
           double difference    = 0;
-          for (const ContactNode<dim> &node : *d.contact)
+          for (const ContactNode<dim> &node : d.contact())
             {
               const double e = pressure(node, of_level.tractions) -
-                pressure(node, nest.tractions);
+                pressure(node, nest.tractions());
               difference +=
                 node.measure * of_level.face_size[node.node] * e * e;
             }

@@ -173,7 +173,7 @@ namespace Benchmark
   void
   solve_level(NestedIteration<dim> &nest, const double limit)
   {
-    const Discretization<dim>                &d       = *nest.discretization;
+    const Discretization<dim>                &d       = nest.discretization();
     const auto                                problem = d.problem();
     Timer                                     timer;
     typename SafeguardedSolver<dim>::Progress progress = [&](const unsigned int,
@@ -181,28 +181,28 @@ namespace Benchmark
       if (timer.wall_time() > limit)
         throw std::runtime_error("it took too long");
     };
-    nest.state = nest.make_guess(nest.displacement);
+    nest.state() = nest.make_guess(nest.displacement());
     try
       {
         SafeguardedSolver<dim> solver(
           *d.hierarchy, problem, nest.parameters.solver);
-        nest.report = solver.solve(nest.displacement, nest.state, progress);
-        if (!nest.report.attempts.empty())
-          std::cerr << "  level " << nest.level << ": "
-                    << describe_attempts(nest.report) << std::endl;
-        if (!nest.report.converged)
-          std::cerr << "  level " << nest.level
-                    << " was not solved: " << nest.report.certificate.describe()
+        nest.report() = solver.solve(nest.displacement(), nest.state(), progress);
+        if (!nest.report().attempts.empty())
+          std::cerr << "  level " << nest.level() << ": "
+                    << describe_attempts(nest.report()) << std::endl;
+        if (!nest.report().converged)
+          std::cerr << "  level " << nest.level()
+                    << " was not solved: " << nest.report().certificate.describe()
                     << std::endl;
       }
     catch (const std::exception &error)
       {
-        std::cerr << "  level " << nest.level
+        std::cerr << "  level " << nest.level()
                   << " was not solved: " << error.what() << std::endl;
-        nest.report.residual.reinit(nest.displacement);
-        problem.matrix.residual(nest.report.residual.begin(),
+        nest.report().residual.reinit(nest.displacement());
+        problem.matrix.residual(nest.report().residual.begin(),
                                 problem.forces.begin(),
-                                nest.displacement.begin());
+                                nest.displacement().begin());
       }
     nest.accept();
   }
@@ -228,8 +228,8 @@ namespace Benchmark
   is_last(const NestedIteration<dim> &nest)
   {
     const auto &refinement = nest.parameters.refinement;
-    return nest.level >= refinement.levels ||
-      nest.discretization->dof_handler.n_dofs() >= refinement.maximum_dofs;
+    return nest.level() >= refinement.levels ||
+      nest.discretization().dof_handler().n_dofs() >= refinement.maximum_dofs;
   }
 
 
@@ -262,18 +262,19 @@ namespace Benchmark
 
     NestedIteration<dim> nest(
       parameters, make_inclusion<dim>(parameters, options.inclusion));
+    nest.begin();
     bool   more      = true;
     double n_coarser = 0;
     while (more)
       {
-        std::cerr << "level " << nest.level << ", "
-                  << nest.discretization->dof_handler.n_dofs() << " dofs"
+        std::cerr << "level " << nest.level() << ", "
+                  << nest.discretization().dof_handler().n_dofs() << " dofs"
                   << std::endl;
         const bool given = (options.guess != "interpolated");
         if (given)
           {
             set_guess(nest, options.guess);
-            nest.state = nest.make_guess(nest.displacement);
+            nest.state() = nest.make_guess(nest.displacement());
           }
         else
           solve_level(nest, options.limit);
@@ -282,7 +283,7 @@ namespace Benchmark
           ? last || options.every_level
           : std::find(options.levels.begin(),
                       options.levels.end(),
-                      nest.level) != options.levels.end();
+                      nest.level()) != options.levels.end();
         if (wanted)
           {
             Contest<dim> contest(
@@ -299,8 +300,8 @@ namespace Benchmark
                 table << parameters.name << ','
                       << parameters.contact.friction_coefficient << ','
                       << parameters.material.poisson_ratio() << ','
-                      << nest.level << ','
-                      << nest.discretization->dof_handler.n_dofs() << ','
+                      << nest.level() << ','
+                      << nest.discretization().dof_handler().n_dofs() << ','
                       << r.n_contact << ',' << r.n_sticking << ',' << name
                       << ',' << r.converged << ',' << r.iterations << ','
                       << r.inner_iterations << ',' << r.setup_seconds << ','
@@ -311,9 +312,9 @@ namespace Benchmark
                 std::printf("%-22s %5u %8u %8u %8u  %-4s %5u %6u %9.3f %9.3f "
                             "%8.1f %9.1e %16.9e\n",
                             name.c_str(),
-                            nest.level,
+                            nest.level(),
                             static_cast<unsigned int>(
-                              nest.discretization->dof_handler.n_dofs()),
+                              nest.discretization().dof_handler().n_dofs()),
                             r.n_contact,
                             r.n_sticking,
                             r.converged ? "yes" : "no",
@@ -327,7 +328,7 @@ namespace Benchmark
                 std::fflush(stdout);
               }
           }
-        n_coarser = nest.discretization->dof_handler.n_dofs();
+        n_coarser = nest.discretization().dof_handler().n_dofs();
         more      = !given && nest.refine();
       }
   }

@@ -83,7 +83,7 @@ namespace
     for (const ContactNode<2> &p : problem.contact())
       listed[p.node] = 1;
     for (const auto &cell :
-         problem.discretization->dof_handler.active_cell_iterators())
+         problem.discretization.dof_handler().active_cell_iterators())
       for (const unsigned int v : cell->vertex_indices())
         {
           const Point<2> x = cell->vertex(v);
@@ -168,14 +168,14 @@ namespace
     const auto &disc        = *problem.discretization;
     const auto &constraints = problem.constraints();
 
-    VectorType integrals(disc.dof_handler.locally_owned_dofs(), MPI_COMM_WORLD);
+    VectorType integrals(disc.dof_handler().locally_owned_dofs(), MPI_COMM_WORLD);
     const QGauss<dim - 1> quadrature(3);
     FEFaceValues<dim>     face_values(
-      disc.mapping, disc.fe, quadrature, update_values | update_JxW_values);
+      disc.mapping(), disc.fe, quadrature, update_values | update_JxW_values);
     Vector<double>                       local(disc.fe.n_dofs_per_cell());
     std::vector<types::global_dof_index> indices(local.size());
     std::vector<char> hangs_at_contact(constraints.n_nodes(), 0);
-    for (const auto &cell : disc.dof_handler.active_cell_iterators())
+    for (const auto &cell : disc.dof_handler().active_cell_iterators())
       for (const unsigned int f : cell->face_indices())
         if (cell->face(f)->at_boundary() &&
             cell->face(f)->boundary_id() == problem.scene.contact_boundary_id())
@@ -186,7 +186,7 @@ namespace
               for (unsigned int i = 0; i < local.size(); ++i)
                 local(i) += face_values.shape_value(i, q) * face_values.JxW(q);
             cell->get_dof_indices(indices);
-            disc.hanging.distribute_local_to_global(local, indices, integrals);
+            disc.hanging_nodes().distribute_local_to_global(local, indices, integrals);
             for (unsigned int v = 0; v < cell->face(f)->n_vertices(); ++v)
               {
                 const unsigned int node = constraints.node_of_dof(

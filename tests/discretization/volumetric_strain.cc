@@ -74,11 +74,11 @@ main(int argc, char **argv)
   auto           mesh = make_triangulation<2>();
   scene.make_coarse_mesh(*mesh);
   mesh->refine_global(1);
-  const Discretization<2>              d(scene, *mesh), d0(without, *mesh);
-  const Eigen::MatrixXd                got      = to_dense(d.matrix);
+  const Discretized<2>              d(scene, *mesh), d0(without, *mesh);
+  const Eigen::MatrixXd                got      = to_dense(d.stiffness().blocks());
   Eigen::MatrixXd                      expected = to_dense(d0.matrix);
   std::vector<types::global_dof_index> indices(8);
-  for (const auto &cell : d.dof_handler.active_cell_iterators())
+  for (const auto &cell : d.dof_handler().active_cell_iterators())
     {
       const Quadrilateral K = integrate(cell);
       cell->get_dof_indices(indices);
@@ -93,17 +93,17 @@ main(int argc, char **argv)
               "stiffness with mean volumetric strains");
 
   // Those of a displacement, for stresses.
-  VectorType u(d.constraints->partitioner());
+  VectorType u(d.constraints().partitioner());
   Random     random(1);
   for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
     u.local_element(i) = random(-1., 1.);
   const VolumetricStrainField<2> mean(
-    d.mapping, d.dof_handler, VolumetricStrain::mean, u);
+    d.mapping(), d.dof_handler(), VolumetricStrain::mean, u);
   const VolumetricStrainField<2> pointwise(
-    d.mapping, d.dof_handler, VolumetricStrain::pointwise, u);
+    d.mapping(), d.dof_handler(), VolumetricStrain::pointwise, u);
   double difference = 0., last = 0.;
-  auto   last_cell = d.dof_handler.begin_active();
-  for (const auto &cell : d.dof_handler.active_cell_iterators())
+  auto   last_cell = d.dof_handler().begin_active();
+  for (const auto &cell : d.dof_handler().active_cell_iterators())
     {
       const Quadrilateral K      = integrate(cell);
       double              strain = 0.;

@@ -99,7 +99,7 @@ namespace
       // on the right everything moves in one direction only, so that blocks of
       // the coarse matrices have rank one.
       for (const auto &cell :
-           problem.discretization->dof_handler.active_cell_iterators())
+           problem.discretization.dof_handler().active_cell_iterators())
         for (const unsigned int v : cell->vertex_indices())
           {
             const unsigned int node =

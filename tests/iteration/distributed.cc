@@ -87,26 +87,26 @@ namespace
               }
           mesh->execute_coarsening_and_refinement();
         }
-      discretization = std::make_unique<Discretization<dim>>(scene, *mesh);
+      discretization = std::make_unique<Discretized<dim>>(scene, *mesh);
 
       // Where nodes are: on the leaf mesh those that are known, on the levels
       // all there are.
       const auto &d = *discretization;
-      points.resize(d.constraints->n_nodes());
-      for (const auto &cell : d.dof_handler.active_cell_iterators())
+      points.resize(d.constraints().n_nodes());
+      for (const auto &cell : d.dof_handler().active_cell_iterators())
         if (!cell->is_artificial())
           for (const unsigned int v : cell->vertex_indices())
             {
               const unsigned int node =
-                d.constraints->node_of_dof(cell->vertex_dof_index(v, 0));
+                d.constraints().node_of_dof(cell->vertex_dof_index(v, 0));
               points[node] = cell->vertex(v);
             }
-      for (unsigned int node = 0; node < d.constraints->n_owned_nodes(); ++node)
+      for (unsigned int node = 0; node < d.constraints().n_owned_nodes(); ++node)
         leaf_nodes[key_of(points[node])] = node;
       for (unsigned int k = 0; k < mesh->n_global_levels(); ++k)
         {
           std::vector<double> here;
-          for (const auto &cell : d.dof_handler.mg_cell_iterators_on_level(k))
+          for (const auto &cell : d.dof_handler().mg_cell_iterators_on_level(k))
             if (cell->is_locally_owned_on_level())
               for (const unsigned int v : cell->vertex_indices())
                 {
@@ -114,7 +114,7 @@ namespace
                   for (unsigned int c = 0; c < dim; ++c)
                     here.push_back(cell->vertex(v)[c]);
                 }
-          level_points.emplace_back(d.dof_handler.n_dofs(k) / dim);
+          level_points.emplace_back(d.dof_handler().n_dofs(k) / dim);
           for (const auto &list :
                Utilities::MPI::all_gather(communicator, here))
             for (auto entry = list.begin(); entry != list.end();)
@@ -134,11 +134,11 @@ namespace
     Truncation<dim>
     truncation(const unsigned int seed, const double scale) const
     {
-      Truncation<dim>   result(*discretization->constraints);
-      const auto       &constraints = *discretization->constraints;
+      Truncation<dim>   result(discretization.constraints());
+      const auto       &constraints = discretization.constraints();
       std::vector<char> is_contact(constraints.n_nodes(), 0);
       VectorType        flags(constraints.partitioner());
-      for (const ContactNode<dim> &p : *discretization->contact)
+      for (const ContactNode<dim> &p : discretization.contact())
         if (p.n_free_tangents == dim - 1)
           flags.local_element(dim * p.node) = 1.;
       VectorType where(constraints.partitioner());
@@ -186,10 +186,10 @@ namespace
   compare_discretizations(const Problem<dim> &all, const Problem<dim> &alone)
   {
     const auto &d = *all.discretization, &e = *alone.discretization;
-    const auto &constraints = *d.constraints;
+    const auto &constraints = d.constraints();
 
     const double n_contact =
-      sum_over_processes(d.contact->size(), MPI_COMM_WORLD);
+      sum_over_processes(d.contact().size(), MPI_COMM_WORLD);
     report(std::abs(n_contact - e.contact->size()),
            0.,
            "the contact nodes are those of one process");
@@ -197,7 +197,7 @@ namespace
     for (const ContactNode<dim> &p : *e.contact)
       nodes[key_of(p.point)] = &p;
     double difference = 0;
-    for (const ContactNode<dim> &p : *d.contact)
+    for (const ContactNode<dim> &p : d.contact())
       {
         const ContactNode<dim> &q = *nodes.at(key_of(p.point));
         difference                = std::max({difference,
@@ -216,16 +216,16 @@ namespace
     where.update_ghost_values();
     difference     = 0;
     double missing = 0;
-    for (unsigned int i = 0; i < d.matrix.n_rows(); ++i)
+    for (unsigned int i = 0; i < d.stiffness().blocks().n_rows(); ++i)
       {
         const unsigned int row = alone.leaf_nodes.at(key_of(all.points[i]));
         missing += std::abs(
-          static_cast<double>(d.matrix.row_end(i) - d.matrix.row_begin(i)) -
+          static_cast<double>(d.stiffness().blocks().row_end(i) - d.stiffness().blocks().row_begin(i)) -
           (e.matrix.row_end(row) - e.matrix.row_begin(row)));
-        for (std::size_t k = d.matrix.row_begin(i); k < d.matrix.row_end(i);
+        for (std::size_t k = d.stiffness().blocks().row_begin(i); k < d.stiffness().blocks().row_end(i);
              ++k)
           {
-            const unsigned int j = d.matrix.column(k);
+            const unsigned int j = d.stiffness().blocks().column(k);
             Point<dim>         point;
             for (unsigned int c = 0; c < dim; ++c)
               point[c] = where.local_element(dim * j + c);
@@ -237,7 +237,7 @@ namespace
               for (unsigned int b = 0; b < dim * dim; ++b)
                 difference = std::max(
                   difference,
-                  std::abs(d.matrix.block(k)[b] - e.matrix.block(l)[b]));
+                  std::abs(d.stiffness().blocks().block(k)[b] - e.matrix.block(l)[b]));
           }
       }
     report(missing, 0., "rows of the stiffness matrix have the same pattern");
@@ -257,7 +257,7 @@ namespace
     for (unsigned int k = 0; k < all_matrices.n_levels(); ++k)
       {
         const auto &numbering =
-          all.discretization->hierarchy->level(k).numbering();
+          all.discretization.hierarchy->level(k).numbering();
         const auto &A = all_matrices.matrix(k), &B = alone_matrices.matrix(k);
         double      scale = 0;
         for (unsigned int i = 0; i < B.n_rows(); ++i)
@@ -297,7 +297,7 @@ namespace
                          const unsigned int  seed)
   {
     const auto        &d = *all.discretization, &e = *alone.discretization;
-    LevelMatrices<dim> matrices(d.matrix, *d.hierarchy, *d.constraints),
+    LevelMatrices<dim> matrices(d.stiffness().blocks(), *d.hierarchy, d.constraints()),
       alone_matrices(e.matrix, *e.hierarchy, *e.constraints);
     report(largest_difference(matrices, all, alone_matrices, alone),
            1e-13,
@@ -314,7 +314,7 @@ namespace
         difference = std::max(
           difference, largest_difference(matrices, all, alone_matrices, alone));
 
-        LevelMatrices<dim> fresh(d.matrix, *d.hierarchy, *d.constraints);
+        LevelMatrices<dim> fresh(d.stiffness().blocks(), *d.hierarchy, d.constraints());
         fresh.update(truncation);
         for (unsigned int k = 0; k < matrices.n_levels(); ++k)
           for (std::size_t p = 0; p < matrices.matrix(k).n_blocks(); ++p)
@@ -334,14 +334,14 @@ namespace
   check_cycle(const Problem<dim> &all, const unsigned int seed)
   {
     const auto      &d = *all.discretization;
-    CoarseCycle<dim> cycle(d.matrix, *d.hierarchy, *d.constraints, Cycle::V, 2);
+    CoarseCycle<dim> cycle(d.stiffness().blocks(), *d.hierarchy, d.constraints(), Cycle::V, 2);
     const Truncation<dim> truncation = all.truncation(seed, 1.);
     cycle.update(truncation);
 
     const auto random_residual = [&](const unsigned int salt) {
-      VectorType r(d.constraints->partitioner());
-      for (unsigned int i = 0; i < d.constraints->n_owned_nodes(); ++i)
-        if (!d.constraints->is_hanging(i))
+      VectorType r(d.constraints().partitioner());
+      for (unsigned int i = 0; i < d.constraints().n_owned_nodes(); ++i)
+        if (!d.constraints().is_hanging(i))
           {
             Random random = random_at(all.points[i], salt);
             for (unsigned int c = 0; c < dim; ++c)
@@ -374,26 +374,26 @@ namespace
     const TrescaFunctional<dim> functional(d.problem()),
       alone_functional(e.problem());
     MonotoneSmoother<dim> smoother(
-      d.matrix, *d.constraints, *d.contact, d.friction_coefficient);
+      d.stiffness().blocks(), d.constraints(), d.contact(), d.friction_coefficient);
 
-    VectorType u = d.admissible_start();
-    for (unsigned int i = 0; i < d.constraints->n_owned_nodes(); ++i)
+    VectorType u = admissible_start(d);
+    for (unsigned int i = 0; i < d.constraints().n_owned_nodes(); ++i)
       {
         Random random = random_at(all.points[i], seed);
         for (unsigned int c = 0; c < dim; ++c)
-          if (!d.constraints->is_prescribed(i, c) &&
-              !d.constraints->is_hanging(i))
+          if (!d.constraints().is_prescribed(i, c) &&
+              !d.constraints().is_hanging(i))
             u.local_element(dim * i + c) = random(-.01, .01);
       }
-    ContactState state(d.contact->size(), true),
+    ContactState state(d.contact().size(), true),
       alone_state(e.contact->size(), true);
     const auto bound_at = [&](const ContactNode<dim> &p) {
       Random random = random_at(p.point, seed + 1);
       return random.chance(.2) ? 0. : random(0., .01);
     };
-    for (unsigned int p = 0; p < d.contact->size(); ++p)
+    for (unsigned int p = 0; p < d.contact().size(); ++p)
       {
-        const ContactNode<dim> &node   = (*d.contact)[p];
+        const ContactNode<dim> &node   = (d.contact())[p];
         const double            excess = normal_component(node, u) - node.gap;
         if (excess > 0)
           for (unsigned int c = 0; c < dim; ++c)
@@ -406,7 +406,7 @@ namespace
     // The displacement as one process knows it.
     const auto gathered = [&]() {
       std::vector<double> here;
-      for (unsigned int i = 0; i < d.constraints->n_owned_nodes(); ++i)
+      for (unsigned int i = 0; i < d.constraints().n_owned_nodes(); ++i)
         {
           for (unsigned int c = 0; c < dim; ++c)
             here.push_back(all.points[i][c]);
@@ -430,8 +430,8 @@ namespace
     // With many processes there must be nodes that need damping, or nothing is
     // tested.
     double n_damped = 0;
-    for (unsigned int i = 0; i < d.matrix.n_rows(); ++i)
-      n_damped += interface_damping(d.matrix, i) != zero_block<dim>();
+    for (unsigned int i = 0; i < d.stiffness().blocks().n_rows(); ++i)
+      n_damped += interface_damping(d.stiffness().blocks(), i) != zero_block<dim>();
     n_damped = sum_over_processes(n_damped, MPI_COMM_WORLD);
     if (dim == 3)
       report(Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) >= 4 &&
@@ -446,7 +446,7 @@ namespace
            penetration = functional.largest_penetration(u), fall = 0;
     for (unsigned int step = 0; step < 20; ++step)
       {
-        smoother.sweep(u, d.forces, state, false, step % 2 == 1);
+        smoother.sweep(u, d.loads(), state, false, step % 2 == 1);
         const double next = functional.energy(u, state);
         disagreement      = std::max(
           disagreement,
@@ -478,12 +478,12 @@ namespace
     const std::size_t in_an_exchange = n_messages() - before;
     typename MonotoneSmoother<dim>::Sweeps what;
     what.n = 3;
-    smoother.sweeps(v, d.forces, w, what);
+    smoother.sweeps(v, d.loads(), w, what);
     report(n_messages() - before == 4 * in_an_exchange ? 0. : 1.,
            0.,
            "there is one exchange of ghosts per sweep");
     for (unsigned int step = 0; step < 3; ++step)
-      smoother.sweep(u, d.forces, state, false, false);
+      smoother.sweep(u, d.loads(), state, false, false);
     double difference = 0;
     for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
       difference =
@@ -499,10 +499,10 @@ namespace
   check_monotonicity(const Problem<dim> &all, const unsigned int seed)
   {
     const auto                &d       = *all.discretization;
-    const DiscreteProblem<dim> problem = {d.matrix,
-                                          d.forces,
-                                          *d.constraints,
-                                          *d.contact,
+    const DiscreteProblem<dim> problem = {d.stiffness().blocks(),
+                                          d.loads(),
+                                          d.constraints(),
+                                          d.contact(),
                                           FrictionLaw::tresca,
                                           d.friction_coefficient};
     for (const auto correction :
@@ -511,11 +511,11 @@ namespace
         SolverSettings settings;
         settings.coarse_correction = correction;
         CoulombSolver<dim> solver(*d.hierarchy, problem, settings);
-        VectorType         u = d.admissible_start();
-        ContactState       state(d.contact->size(), true);
-        for (unsigned int p = 0; p < d.contact->size(); ++p)
+        VectorType         u = admissible_start(d);
+        ContactState       state(d.contact().size(), true);
+        for (unsigned int p = 0; p < d.contact().size(); ++p)
           {
-            Random random = random_at((*d.contact)[p].point, seed + 1);
+            Random random = random_at((d.contact())[p].point, seed + 1);
             state.set_normal_force(p, random(0., .01));
           }
         const SolverReport result = solver.solve(u, state);
@@ -548,10 +548,10 @@ namespace
         const auto solve = [&](const Discretization<dim> &disc,
                                ContactState              &state) {
           CoulombSolver<dim> solver(*disc.hierarchy, disc.problem(), settings);
-          VectorType         u = disc.admissible_start();
+          VectorType         u = admissible_start(disc);
           return solver.solve(u, state);
         };
-        ContactState state(d.contact->size(), true),
+        ContactState state(d.contact().size(), true),
           alone_state(e.contact->size(), true);
         const SolverReport found    = solve(d, state);
         const SolverReport expected = solve(e, alone_state);
@@ -569,9 +569,9 @@ namespace
         for (unsigned int p = 0; p < e.contact->size(); ++p)
           number[key_of((*e.contact)[p].point)] = p;
         double n_different = 0;
-        for (unsigned int p = 0; p < d.contact->size(); ++p)
+        for (unsigned int p = 0; p < d.contact().size(); ++p)
           {
-            const unsigned int q = number.at(key_of((*d.contact)[p].point));
+            const unsigned int q = number.at(key_of((d.contact())[p].point));
             n_different += state.in_contact(p) != alone_state.in_contact(q) ||
               (state.in_contact(p) && state.sticks(p) != alone_state.sticks(q));
           }

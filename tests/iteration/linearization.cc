@@ -188,7 +188,7 @@ namespace
   {
     VectorType r = problem.leaf_vector();
     problem.matrix().residual(
-      r.begin(), problem.discretization->forces.begin(), u.begin());
+      r.begin(), problem.discretization.loads().begin(), u.begin());
     linearization.linearize_residual(r, u, state);
     return r;
   }
@@ -242,7 +242,7 @@ namespace
                  const Iterate            &it,
                  Random                   &random)
   {
-    const TrescaFunctional<dim> functional(problem.discretization->problem());
+    const TrescaFunctional<dim> functional(problem.discretization.problem());
     const VectorType            r =
       linearized_residual<dim>(problem, linearization, it.u, it.state);
     VectorType v(r);
@@ -431,7 +431,7 @@ namespace
   {
     const auto                 &contact     = problem.contact();
     const auto                 &constraints = problem.constraints();
-    const TrescaFunctional<dim> functional(problem.discretization->problem());
+    const TrescaFunctional<dim> functional(problem.discretization.problem());
     Linearization<dim>          linearization(problem.matrix(),
                                      constraints,
                                      contact,

@@ -100,9 +100,9 @@ namespace
           if (j != i && !held.is_hanging(j))
             for (unsigned int d = 0; d < dim; ++d)
               held.prescribe(j, d, u.local_element(dim * j + d));
-        const ContactBoundary<dim> contact(disc.mapping,
-                                           disc.dof_handler,
-                                           disc.hanging,
+        const ContactBoundary<dim> contact(disc.mapping(),
+                                           disc.dof_handler(),
+                                           disc.hanging_nodes(),
                                            held,
                                            problem.scene.contact_boundary_id(),
                                            problem.scene.obstacle(),
@@ -120,7 +120,7 @@ namespace
           problem.matrix(), held, contact, friction);
         const VectorType before = u;
         const double     energy = functional.energy(u, state);
-        smoother.sweep(u, disc.forces, single, false, random.chance(.5));
+        smoother.sweep(u, disc.loads(), single, false, random.chance(.5));
         const double now = functional.energy(u, state);
         increase         = std::max(increase, now - energy);
         n_lowered += now < energy - 1e-8;
@@ -173,7 +173,7 @@ namespace
         double       last  = functional.energy(u, state);
         for (unsigned int sweep = 0; sweep < 20; ++sweep)
           {
-            smoother.sweep(u, disc.forces, state, false, random.chance(.5));
+            smoother.sweep(u, disc.loads(), state, false, random.chance(.5));
             const double energy = functional.energy(u, state);
             increase            = std::max(increase, energy - last);
             last                = energy;
@@ -209,11 +209,11 @@ namespace
         typename MonotoneSmoother<dim>::Sweeps three;
         three.n         = 3;
         three.backwards = start % 2;
-        smoother.sweeps(v, disc.forces, other, three, &r);
+        smoother.sweeps(v, disc.loads(), other, three, &r);
         for (unsigned int sweep = 0; sweep < 3; ++sweep)
-          smoother.sweep(u, disc.forces, state, false, three.backwards);
+          smoother.sweep(u, disc.loads(), state, false, three.backwards);
         problem.matrix().residual(
-          expected.begin(), disc.forces.begin(), u.begin());
+          expected.begin(), disc.loads().begin(), u.begin());
         expected -= r;
         u -= v;
         residuals =
@@ -274,9 +274,9 @@ namespace
           {
             const bool coulomb   = start == 2 && sweep > 2;
             const bool backwards = sweep % 2;
-            smoother.sweep(u, disc.forces, state, coulomb, backwards);
-            smoother.sweep(v, disc.forces, state_v, coulomb, backwards);
-            uzawa.sweep(w, disc.forces, state_w, coulomb, backwards);
+            smoother.sweep(u, disc.loads(), state, coulomb, backwards);
+            smoother.sweep(v, disc.loads(), state_v, coulomb, backwards);
+            uzawa.sweep(w, disc.loads(), state_w, coulomb, backwards);
             disagreement = std::max(
               disagreement, largest_difference<dim>(u, w) / u.linfty_norm());
             for (unsigned int p = 0; p < state.size(); ++p)
@@ -344,8 +344,8 @@ namespace
     const auto       linear = [&](const VectorType &x, const bool backwards) {
       VectorType u(base), v(base);
       u += x;
-      smoother.sweep(u, disc.forces, state, false, backwards);
-      smoother.sweep(v, disc.forces, state, false, backwards);
+      smoother.sweep(u, disc.loads(), state, false, backwards);
+      smoother.sweep(v, disc.loads(), state, false, backwards);
       u -= v;
       return u;
     };
@@ -383,13 +383,13 @@ namespace
     VectorType   u     = random_start<dim>(problem, random);
     ContactState state = random_state<dim>(problem, friction, random);
     for (unsigned int sweep = 0; sweep < 2500; ++sweep)
-      smoother.sweep(u, disc.forces, state, coulomb, sweep % 2);
+      smoother.sweep(u, disc.loads(), state, coulomb, sweep % 2);
 
     VectorType   v(u), r(u);
     ContactState after = state;
-    smoother.sweep(v, disc.forces, after, coulomb, false);
-    smoother.sweep(v, disc.forces, after, coulomb, true);
-    problem.matrix().residual(r.begin(), disc.forces.begin(), u.begin());
+    smoother.sweep(v, disc.loads(), after, coulomb, false);
+    smoother.sweep(v, disc.loads(), after, coulomb, true);
+    problem.matrix().residual(r.begin(), disc.loads().begin(), u.begin());
     const Certificate certificate = make_certificate<dim>(
       u, r, problem.constraints(), problem.contact(), state, friction, coulomb);
     v -= u;

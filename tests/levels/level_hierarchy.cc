@@ -31,7 +31,7 @@ namespace
   void
   test_transfer(const RandomProblem<dim> &problem, Random &random)
   {
-    const DoFHandler<dim> &dof_handler = problem.discretization->dof_handler;
+    const DoFHandler<dim> &dof_handler = problem.discretization.dof_handler();
     const auto            &hierarchy   = problem.hierarchy();
 
     MGConstrainedDoFs mg_constrained_dofs;
@@ -142,7 +142,7 @@ namespace
     std::map<Pair, unsigned int>         node_at;
     std::set<Pair>                       touches_refined;
     std::map<unsigned int, unsigned int> coarsest_active;
-    for (const auto &cell : disc.dof_handler.cell_iterators())
+    for (const auto &cell : disc.dof_handler().cell_iterators())
       for (const unsigned int v : cell->vertex_indices())
         {
           const unsigned int vertex = cell->vertex_index(v);
@@ -267,7 +267,7 @@ namespace
           const unsigned int l = finest[i];
           never_refined =
             never_refined && touches_refined.count({l, vertex}) == 0;
-          for (const auto &master : *disc.hanging.get_constraint_entries(
+          for (const auto &master : *disc.hanging_nodes().get_constraint_entries(
                  constraints.partitioner()->local_to_global(dim * i)))
             {
               const unsigned int m = constraints.node_of_dof(master.first);

@@ -39,13 +39,13 @@ namespace
   {
     const auto        &constraints = problem.constraints();
     const unsigned int n_leaf      = constraints.n_nodes();
-    const unsigned int n_level = problem.discretization->dof_handler.n_dofs(k);
+    const unsigned int n_level = problem.discretization.dof_handler().n_dofs(k);
     Eigen::MatrixXd    M       = Eigen::MatrixXd::Zero(dim * n_leaf, n_level);
     std::vector<char>  seen(n_leaf, 0);
     double             disagreement = 0;
 
     for (const auto &active :
-         problem.discretization->dof_handler.active_cell_iterators())
+         problem.discretization.dof_handler().active_cell_iterators())
       {
         if (active->level() < static_cast<int>(k))
           continue;

@@ -256,13 +256,13 @@ namespace
       block_parameters<dim>(FrictionLaw::none, 0.), 3, .3, random);
     const auto        &disc        = *problem.discretization;
     const auto        &constraints = problem.constraints();
-    const unsigned int n_dofs      = disc.dof_handler.n_dofs();
+    const unsigned int n_dofs      = disc.dof_handler().n_dofs();
     std::cout << dim << "D, leaf matrix, " << constraints.n_nodes()
               << " nodes, " << problem.n_hanging() << " hang" << std::endl;
 
     using Entry = Eigen::Triplet<double>;
     std::vector<Entry>                   entries, extension;
-    FEValues<dim>                        fe_values(disc.mapping,
+    FEValues<dim>                        fe_values(disc.mapping(),
                             disc.fe,
                             QGauss<dim>(2),
                             update_gradients | update_JxW_values);
@@ -270,7 +270,7 @@ namespace
     const FEValuesExtractors::Vector     displacement(0);
     const double lambda = problem.scene.material().lambda();
     const double mu     = problem.scene.material().mu();
-    for (const auto &cell : disc.dof_handler.active_cell_iterators())
+    for (const auto &cell : disc.dof_handler().active_cell_iterators())
       {
         fe_values.reinit(cell);
         cell->get_dof_indices(indices);
@@ -289,7 +289,7 @@ namespace
             }
       }
     for (unsigned int i = 0; i < n_dofs; ++i)
-      if (const auto *masters = disc.hanging.get_constraint_entries(i))
+      if (const auto *masters = disc.hanging_nodes().get_constraint_entries(i))
         for (const auto &master : *masters)
           extension.emplace_back(i, master.first, master.second);
       else

@@ -2,6 +2,7 @@
 #define friction_tests_support_random_problem_h
 
 #include <common/discretization/discretization.h>
+#include <common/levels/level_hierarchy.h>
 #include <common/nodes/truncation.h>
 
 #include <deal.II/base/mpi.h>
@@ -129,14 +130,14 @@ namespace Tests
                        const types::boundary_id   boundary_id,
                        const Condition           &holds)
   {
-    const auto               &constraints = *discretization.constraints;
-    const auto               &contact     = *discretization.contact;
+    const auto               &constraints = discretization.constraints();
+    const auto               &contact     = discretization.contact();
     std::vector<unsigned int> number(constraints.n_nodes(),
                                      numbers::invalid_unsigned_int);
     for (unsigned int p = 0; p < contact.size(); ++p)
       number[contact[p].node] = p;
     std::vector<char> counts(constraints.n_nodes(), 0);
-    for (const auto &cell : discretization.dof_handler.active_cell_iterators())
+    for (const auto &cell : discretization.dof_handler().active_cell_iterators())
       for (const unsigned int f : cell->face_indices())
         if (cell->at_boundary(f) && cell->face(f)->boundary_id() == boundary_id)
           for (unsigned int v = 0; v < cell->face(f)->n_vertices(); ++v)
@@ -145,7 +146,7 @@ namespace Tests
               const unsigned int node = constraints.node_of_dof(dof);
               if (constraints.is_hanging(node))
                 for (const auto &master :
-                     *discretization.hanging.get_constraint_entries(dof))
+                     *discretization.hanging_nodes().get_constraint_entries(dof))
                   {
                     const unsigned int p =
                       number[constraints.node_of_dof(master.first)];
@@ -168,34 +169,40 @@ namespace Tests
                   Random            &random)
       : scene(parameters)
       , mesh(make_triangulation<dim>())
+      , discretization(scene, *mesh)
     {
       scene.make_coarse_mesh(*mesh);
       refine_at_random<dim>(*mesh, n_rounds, density, random);
-      discretization = std::make_unique<Discretization<dim>>(scene, *mesh);
+      discretization.set_up();
+      discretization.assemble(elasticity<dim>(scene.material()));
+      level_hierarchy =
+        std::make_unique<LevelHierarchy<dim>>(discretization.dof_handler(),
+                                              constraints(),
+                                              matrix());
     }
 
     const NodalConstraints<dim> &
     constraints() const
     {
-      return *discretization->constraints;
+      return discretization.constraints();
     }
 
     const ContactBoundary<dim> &
     contact() const
     {
-      return *discretization->contact;
+      return discretization.contact();
     }
 
     const LevelHierarchy<dim> &
     hierarchy() const
     {
-      return *discretization->hierarchy;
+      return *level_hierarchy;
     }
 
     const NodeBlockMatrix<dim> &
     matrix() const
     {
-      return discretization->matrix;
+      return discretization.stiffness().blocks();
     }
 
     VectorType
@@ -219,7 +226,7 @@ namespace Tests
     n_hanging_at_contact(const Condition &holds) const
     {
       return Tests::n_hanging_at_contact<dim>(
-        *discretization, scene.contact_boundary_id(), holds);
+        discretization, scene.contact_boundary_id(), holds);
     }
 
     /** The number of hanging nodes one of whose masters is truncated although
@@ -233,7 +240,7 @@ namespace Tests
           {
             bool found = false;
             for (const auto &master :
-                 *discretization->hanging.get_constraint_entries(
+                 *discretization.hanging_nodes().get_constraint_entries(
                    constraints().partitioner()->local_to_global(dim * i)))
               {
                 const unsigned int m = constraints().node_of_dof(master.first);
@@ -247,7 +254,10 @@ namespace Tests
 
     const Scene<dim>                                           scene;
     std::unique_ptr<parallel::distributed::Triangulation<dim>> mesh;
-    std::unique_ptr<Discretization<dim>>                       discretization;
+    Discretization<dim>                                        discretization;
+
+  private:
+    std::unique_ptr<LevelHierarchy<dim>> level_hierarchy;
   };
 
 

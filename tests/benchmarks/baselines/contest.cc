@@ -159,12 +159,12 @@ namespace Benchmark
     , n_coarser(n_coarser)
     , seconds(seconds)
     , limit(limit)
-    , points(node_points(*nest.discretization))
+    , points(node_points(nest.discretization()))
     , bonded(
-        bond(nest.discretization->problem(), nest.displacement, nest.state))
-    , nothing(nest.discretization->mapping,
-              nest.discretization->dof_handler,
-              nest.discretization->hanging,
+        bond(nest.discretization().problem(), nest.displacement(), nest.state()))
+    , nothing(nest.discretization().mapping(),
+              nest.discretization().dof_handler(),
+              nest.discretization().hanging_nodes(),
               bonded,
               numbers::invalid_boundary_id,
               Obstacle<dim>(),
@@ -177,7 +177,7 @@ namespace Benchmark
   DiscreteProblem<dim>
   Contest<dim>::problem() const
   {
-    return nest.discretization->problem();
+    return nest.discretization().problem();
   }
 
 
@@ -186,8 +186,8 @@ namespace Benchmark
   DiscreteProblem<dim>
   Contest<dim>::bonded_problem() const
   {
-    const Discretization<dim> &d = *nest.discretization;
-    return {d.matrix, d.forces, bonded, nothing, FrictionLaw::none, 0.};
+    const Discretization<dim> &d = nest.discretization();
+    return {d.stiffness().blocks(), d.loads(), bonded, nothing, FrictionLaw::none, 0.};
   }
 
 
@@ -215,15 +215,15 @@ namespace Benchmark
     start(problem);
     if (&problem.constraints != &bonded)
       {
-        u     = nest.displacement;
-        state = nest.state;
+        u     = nest.displacement();
+        state = nest.state();
       }
     SolverSettings settings  = nest.parameters.solver;
     settings.inner_tolerance = 1e-13;
     settings.safeguards      = false;
     settings.maximum_cycles  = 60;
     const LevelHierarchy<dim> hierarchy(
-      nest.discretization->dof_handler, problem.constraints, problem.matrix);
+      nest.discretization().dof_handler(), problem.constraints, problem.matrix);
     CoulombSolver<dim> solver(hierarchy, problem, settings);
     const SolverReport report = solver.solve(u, state);
     AssertThrow(report.certificate.largest() <= 1e-9,
@@ -248,17 +248,17 @@ namespace Benchmark
     // q = (N_{J-1}/N_J)^{1/dim} they are d/sqrt(1-q^2) on that level and q
     // times that on this one.
     out << "# scene=" << nest.parameters.name
-        << " dofs=" << nest.discretization->dof_handler.n_dofs()
+        << " dofs=" << nest.discretization().dof_handler().n_dofs()
         << " friction=" << nest.parameters.contact.friction_coefficient
         << " poisson=" << nest.parameters.material.poisson_ratio() << std::endl;
     if (n_coarser > 0)
       {
-        VectorType difference(nest.guess);
+        VectorType difference(nest.guess());
         difference -= references[false];
         const double d = energy_norm(contact, difference) /
           energy_norm(contact, references[false]);
         const double q = std::pow(
-          n_coarser / nest.discretization->dof_handler.n_dofs(), 1. / dim);
+          n_coarser / nest.discretization().dof_handler().n_dofs(), 1. / dim);
         out << "# discretisation_error=" << d * q / std::sqrt(1 - q * q)
             << std::endl;
       }
@@ -296,7 +296,7 @@ namespace Benchmark
                             Recorder                   &recorder)
   {
     const LevelHierarchy<dim> hierarchy(
-      nest.discretization->dof_handler, problem.constraints, problem.matrix);
+      nest.discretization().dof_handler(), problem.constraints, problem.matrix);
     // Without safeguards it is a CoulombSolver and no more.
     SafeguardedSolver<dim> solver(hierarchy, problem, settings);
     recorder.end_setup();
@@ -420,8 +420,8 @@ namespace Benchmark
     result.memory           = report.memory;
     if (is_linear(name))
       {
-        result.n_contact  = nest.state.n_contact();
-        result.n_sticking = nest.state.n_sticking();
+        result.n_contact  = nest.state().n_contact();
+        result.n_sticking = nest.state().n_sticking();
       }
     return result;
   }

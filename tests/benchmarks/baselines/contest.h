@@ -2,7 +2,7 @@
 #define friction_tests_benchmarks_contest_h
 
 #include <tests/benchmarks/baselines/report.h>
-#include <tests/support/nested_iteration.h>
+#include <tests/support/discretized.h>
 
 #include <limits>
 #include <map>

@@ -17,9 +17,9 @@ main(int argc, char **argv)
   scene.make_coarse_mesh(*mesh);
   mesh->refine_global(4);
 
-  const Discretization<2> problem(scene, *mesh);
-  VectorType              u     = problem.admissible_start();
-  ContactState            state = problem.no_friction_yet();
+  const Discretized<2> problem(scene, *mesh);
+  VectorType              u     = admissible_start(problem);
+  ContactState            state = ContactState(problem.contact().size(), problem.problem().has_friction());
   CoulombSolver<2>        solver(
     *problem.hierarchy, problem.problem(), parameters.solver);
   const SolverReport report = solver.solve(u, state);

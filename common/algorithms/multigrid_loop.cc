@@ -1,0 +1,183 @@
+#include <common/algorithms/multigrid_loop.h>
+#include <common/parallel/reductions.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace Friction
+{
+  namespace
+  {
+    // The increments that are still to come, if they go on as the last two:
+    // each iterate differs from the one before by an increment, and from the
+    // solution by all that follow. The pace is not believed to be better than a
+    // tenth per cycle, nor, so that the sum is finite, slower than 0.98.
+    double
+    extrapolated_error(const std::vector<CycleInfo> &cycles)
+    {
+      const double last = cycles.back().increment;
+      if (cycles.size() < 2 || !(cycles[cycles.size() - 2].increment > 0))
+        return last;
+      const double pace =
+        std::max(.1, std::min(.98, last / cycles[cycles.size() - 2].increment));
+      return last * pace / (1 - pace);
+    }
+
+
+
+    // A body that merely moves has no energy but that of rounding errors, with
+    // which no increment should be compared. The diagonal of the matrix says
+    // what energy a displacement of this size could have.
+    template <int dim>
+    double
+    smallest_norm(const DiscreteProblem<dim> &problem, const VectorType &u)
+    {
+      const NodeBlockMatrix<dim> &A   = problem.stiffness.blocks();
+      double                      sum = 0;
+      for (unsigned int i = 0; i < A.n_rows(); ++i)
+        if (A.row_begin(i) < A.row_end(i))
+          sum += trace<dim>(A.block(A.row_begin(i))) *
+            dot<dim>(u.begin() + dim * i, u.begin() + dim * i);
+      return std::max(1e-12 * sum_over_processes(sum, problem.communicator()),
+                      1e-300);
+    }
+  } // namespace
+
+
+
+  double
+  MultigridResult::contraction() const
+  {
+    if (cycles.size() < 2 || !(cycles.front().increment > 0))
+      return 0.;
+    return std::pow(cycles.back().increment / cycles.front().increment,
+                    1. / (cycles.size() - 1));
+  }
+
+
+
+  bool
+  MultigridResult::stalls(const double       tolerance,
+                          const unsigned int maximum_cycles) const
+  {
+    constexpr unsigned int window = 20;
+    const unsigned int     n      = cycles.size();
+    if (n < 50)
+      return false;
+    const auto smallest = [&](const unsigned int end) {
+      double result = cycles[end - window].increment;
+      for (unsigned int i = end - window; i < end; ++i)
+        result = std::min(result, cycles[i].increment);
+      return result;
+    };
+    const double now  = smallest(n);
+    const double rate = std::pow(now / smallest(n - window), 1. / window);
+    return !(rate < 1) ||
+      std::log(tolerance / now) / std::log(rate) > double(maximum_cycles) - n;
+  }
+
+
+
+  template <int dim>
+  MultigridResult
+  run_multigrid(MonotoneMultigrid<dim> &iteration,
+                Iterate                &x,
+                const MultigridLimits  &limits,
+                const Progress         &progress)
+  {
+    const DiscreteProblem<dim> &problem = iteration.problem();
+    const unsigned int          n_dofs  = x.u.locally_owned_size();
+    MultigridResult             result;
+    VectorType                  last_u, last_residual;
+
+    // What has to be summed over all processes goes together: the squares of
+    // the last increment, of the iterate and of the truncated residual, the
+    // energy, and the number of truncated components.
+    enum Sum
+    {
+      increment,
+      norm,
+      energy,
+      residual,
+      truncated,
+      n_sums
+    };
+    std::array<double, n_sums> sums;
+    const auto                 look_at_iterate = [&]() {
+      const bool first = result.cycles.empty();
+      sums.fill(0.);
+      for (unsigned int i = 0; i < n_dofs; ++i)
+        {
+          const double u = x.u.local_element(i),
+                       r = x.residual.local_element(i);
+          if (!first)
+            sums[increment] += (u - last_u.local_element(i)) *
+              (last_residual.local_element(i) - r);
+          sums[norm] += u * (problem.forces.local_element(i) - r);
+        }
+      sums[energy] = iteration.functional().energy_share(x.u, x.residual, x.state);
+      if (!first)
+        {
+          for (unsigned int i = 0; i < n_dofs; ++i)
+            sums[residual] += iteration.truncated_residual().local_element(i) *
+              iteration.truncated_residual().local_element(i);
+          sums[truncated] = iteration.truncation().n_truncated_components();
+        }
+      sums = sum_over_processes(sums, problem.communicator());
+    };
+
+    iteration.begin(x);
+    look_at_iterate();
+    double floor_of_norm = 0;
+    for (unsigned int cycle = 1;; ++cycle)
+      {
+        last_u        = x.u;
+        last_residual = x.residual;
+        CycleInfo info = {};
+        info.energy    = sums[energy];
+        info.damping   = iteration.iterate(x);
+        result.cycles.push_back(info);
+
+        look_at_iterate();
+        if (cycle == 1)
+          floor_of_norm = smallest_norm(problem, x.u);
+        const double squared_size = std::max(sums[norm], floor_of_norm);
+        const double size         = std::sqrt(squared_size);
+        CycleInfo   &last         = result.cycles.back();
+        last.increment =
+          std::sqrt(std::max(0., sums[increment]) / squared_size);
+        last.residual   = std::sqrt(sums[residual]);
+        last.truncated  = sums[truncated];
+        if (progress)
+          progress(cycle, last.increment);
+        if (!std::isfinite(last.increment))
+          break;
+        result.algebraic_error = size * extrapolated_error(result.cycles);
+        if (last.increment <= limits.inner_tolerance ||
+            (cycle > 1 && result.algebraic_error <= limits.energy_tolerance))
+          {
+            result.converged = true;
+            break;
+          }
+        if (cycle >= limits.maximum_cycles ||
+            (limits.gives_up_early &&
+             result.stalls(std::max(limits.inner_tolerance,
+                                    limits.energy_tolerance / size),
+                           limits.maximum_cycles)))
+          break;
+      }
+    return result;
+  }
+
+
+
+  template MultigridResult run_multigrid(MonotoneMultigrid<2> &,
+                                         Iterate &,
+                                         const MultigridLimits &,
+                                         const Progress &);
+  template MultigridResult run_multigrid(MonotoneMultigrid<3> &,
+                                         Iterate &,
+                                         const MultigridLimits &,
+                                         const Progress &);
+} // namespace Friction

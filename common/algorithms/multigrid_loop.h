@@ -1,0 +1,93 @@
+#ifndef friction_algorithms_multigrid_loop_h
+#define friction_algorithms_multigrid_loop_h
+
+#include <common/iteration/monotone_multigrid.h>
+
+#include <functional>
+#include <vector>
+
+namespace Friction
+{
+  /** Is told the number of cycles done and the last relative increment. */
+  using Progress = std::function<void(const unsigned int, const double)>;
+
+
+
+  /** What happened in one multigrid cycle. */
+  struct CycleInfo
+  {
+    double increment; ///< energy norm of the increment, relative to u's
+    double energy;    ///< of the smoothed iterate
+    double damping;   ///< step length of the coarse correction
+    double truncated; ///< components held at all contact nodes
+    double residual;  ///< Euclidean norm of the truncated residual
+  };
+
+
+
+  /** When a multigrid iteration ends. */
+  struct MultigridLimits
+  {
+    /// Relative increment, in the energy norm, that is small enough.
+    double inner_tolerance = 1e-9;
+
+    /// Energy norm of the error, as extrapolated from the increments, that is
+    /// small enough; zero if this is not to be asked.
+    double energy_tolerance = 0.;
+
+    unsigned int maximum_cycles = 200;
+
+    /// End early if the iteration would not arrive within that many cycles;
+    /// see MultigridResult::stalls().
+    bool gives_up_early = false;
+  };
+
+
+
+  /** What a multigrid iteration has come to. */
+  struct MultigridResult
+  {
+    bool                   converged = false;
+    std::vector<CycleInfo> cycles;
+
+    /// Energy norm of the error of the last iterate, extrapolated from the last
+    /// increments.
+    double algebraic_error = 0;
+
+    /** Mean contraction of the increments, per cycle; zero if there were fewer
+     * than two. */
+    double contraction() const;
+
+    /**
+     * Whether the iteration is getting nowhere: at the pace of the last twenty
+     * cycles, measured against the twenty before, the increments would not come
+     * down to @p tolerance within @p maximum_cycles altogether. Says no as long
+     * as there are fewer than fifty cycles; contact zones may take that many to
+     * grow into place.
+     */
+    bool stalls(const double       tolerance,
+                const unsigned int maximum_cycles) const;
+  };
+
+
+
+  /**
+   * Repeats the steps of MonotoneMultigrid until the increments are small
+   * enough, and keeps a record of them.
+   *
+   * Increments are measured between smoothed iterates, in the energy norm: A
+   * times the difference of two iterates is the difference of their residuals,
+   * which are known.
+   *
+   * @param iteration  which is used.
+   * @param x          initial guess, admissible and with the prescribed values,
+   *                   and solution. Values at hanging nodes are not touched.
+   */
+  template <int dim>
+  MultigridResult run_multigrid(MonotoneMultigrid<dim> &iteration,
+                                Iterate                &x,
+                                const MultigridLimits  &limits,
+                                const Progress         &progress = {});
+} // namespace Friction
+
+#endif

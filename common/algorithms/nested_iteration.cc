@@ -1,0 +1,182 @@
+#include <common/algorithms/initial_guess.h>
+#include <common/algorithms/nested_iteration.h>
+#include <common/contact/contact_forces.h>
+#include <common/discretization/mesh_refinement.h>
+#include <common/estimate/contact_estimate.h>
+#include <common/estimate/marking.h>
+
+#include <deal.II/base/timer.h>
+
+namespace Friction
+{
+  template <int dim>
+  NestedIteration<dim>::NestedIteration(const Parameters    &parameters,
+                                        const CellForm<dim> &form,
+                                        const MPI_Comm       communicator)
+    : parameters(parameters)
+    , the_scene(parameters)
+    , bilinear_form(form ? form : elasticity<dim>(the_scene.material()))
+    , triangulation(make_triangulation<dim>(communicator))
+    , the_discretization(the_scene, *triangulation)
+    , contact_state(0, false)
+  {}
+
+
+
+  template <int dim>
+  void
+  NestedIteration<dim>::begin()
+  {
+    the_scene.make_coarse_mesh(*triangulation);
+    triangulation->refine_global(parameters.refinement.initial_refinements);
+    begin_on_level(0);
+  }
+
+
+
+  template <int dim>
+  void
+  NestedIteration<dim>::begin_on_level(const unsigned int level)
+  {
+    Timer timer;
+    the_level = level;
+    the_discretization.set_up();
+    the_discretization.assemble(bilinear_form);
+    guessed_displacement   = the_discretization.vector();
+    guessed_tractions      = guessed_displacement;
+    discretization_seconds = timer.wall_time();
+  }
+
+
+
+  template <int dim>
+  ContactState
+  NestedIteration<dim>::make_guess(VectorType &guess) const
+  {
+    guess = guessed_displacement;
+    return make_initial_guess(the_discretization, guess, guessed_tractions);
+  }
+
+
+
+  template <int dim>
+  SolverReport
+  NestedIteration<dim>::solve_with(const SolverSettings &settings,
+                                   VectorType           &solution,
+                                   ContactState         &state,
+                                   const Progress       &progress)
+  {
+    Timer timer;
+    state = make_guess(solution);
+    ContactSolver<dim> solver(the_discretization, settings);
+    solver_setup_seconds = timer.wall_time();
+    timer.restart();
+    const SolverReport report = solver.solve(solution, state, progress);
+    solution_seconds          = timer.wall_time();
+    the_discretization.interpolate_hanging_nodes(solution);
+    return report;
+  }
+
+
+
+  template <int dim>
+  const SolverReport &
+  NestedIteration<dim>::solve(const Progress &progress)
+  {
+    VectorType         solution;
+    ContactState       state(0, false);
+    const SolverReport report =
+      solve_with(parameters.solver, solution, state, progress);
+    accept(solution, state, report);
+    return last_report;
+  }
+
+
+
+  template <int dim>
+  void
+  NestedIteration<dim>::accept(const VectorType   &solution,
+                               const ContactState &state,
+                               const SolverReport &report)
+  {
+    u             = solution;
+    contact_state = state;
+    last_report   = report;
+    contact_stresses =
+      contact_tractions(the_discretization.contact(), report.residual, state);
+    the_discretization.interpolate_hanging_nodes(u);
+    the_discretization.interpolate_hanging_nodes(contact_stresses);
+  }
+
+
+
+  template <int dim>
+  ErrorEstimate
+  NestedIteration<dim>::estimate() const
+  {
+    return estimate_contact_error(the_discretization, u, contact_stresses);
+  }
+
+
+
+  template <int dim>
+  bool
+  NestedIteration<dim>::is_last() const
+  {
+    return the_level >= parameters.refinement.levels ||
+      the_discretization.dof_handler().n_dofs() >=
+      parameters.refinement.maximum_dofs;
+  }
+
+
+
+  template <int dim>
+  void
+  NestedIteration<dim>::mark_all()
+  {
+    triangulation->set_all_refine_flags();
+  }
+
+
+
+  template <int dim>
+  bool
+  NestedIteration<dim>::mark(const ErrorEstimate &estimate)
+  {
+    if (parameters.refinement.strategy == RefinementStrategy::uniform)
+      {
+        mark_all();
+        return true;
+      }
+    bool any = mark_by_maximum(*triangulation,
+                               estimate.cell_errors,
+                               parameters.refinement.marking) > 0;
+    if (parameters.refinement.contact_zone)
+      any |= mark_contact_zone(the_discretization, contact_state);
+    return any;
+  }
+
+
+
+  template <int dim>
+  void
+  NestedIteration<dim>::refine()
+  {
+    ++the_level;
+    guessed_displacement = u;
+    guessed_tractions    = contact_stresses;
+    guessed_displacement.update_ghost_values();
+    guessed_tractions.update_ghost_values();
+    Timer timer;
+    refine_mesh(*triangulation,
+                the_discretization,
+                {&guessed_displacement, &guessed_tractions});
+    the_discretization.assemble(bilinear_form);
+    discretization_seconds = timer.wall_time();
+  }
+
+
+
+  template class NestedIteration<2>;
+  template class NestedIteration<3>;
+} // namespace Friction

@@ -1,0 +1,169 @@
+#ifndef friction_algorithms_nested_iteration_h
+#define friction_algorithms_nested_iteration_h
+
+#include <common/algorithms/contact_solver.h>
+#include <common/discretization/discretization.h>
+#include <common/estimate/residual_estimator.h>
+
+#include <deal.II/distributed/tria.h>
+
+#include <memory>
+
+namespace Friction
+{
+  /**
+   * A scene solved on one mesh after the other, each with the solution of the
+   * one before as its initial guess: mesh, discretisation, solution, estimate
+   * and refinement, one call at a time. step-friction-2d does the same in view.
+   *
+   * All functions are collective.
+   */
+  template <int dim>
+  class NestedIteration
+  {
+  public:
+    /** No mesh is made yet.
+     * @param bilinear_form  if it is not that of the scene's material. */
+    explicit NestedIteration(const Parameters    &parameters,
+                             const CellForm<dim> &bilinear_form = {},
+                             const MPI_Comm communicator = MPI_COMM_WORLD);
+
+    /** Makes the first mesh and discretises. The initial guess is zero. */
+    void begin();
+
+    /** Discretises on the mesh as it is, which somebody else has made; it is
+     * that of level @p level. The initial guess is zero; see guess(). */
+    void begin_on_level(const unsigned int level);
+
+    /** Solves on this mesh with the settings of the parameters, and accepts the
+     * solution. */
+    const SolverReport &solve(const Progress &progress = {});
+
+    /** The same with other settings, and leaves the iteration over the meshes
+     * alone: @p u and @p state are set to the initial guess and then to the
+     * solution, hanging nodes included. */
+    SolverReport solve_with(const SolverSettings &settings,
+                            VectorType           &u,
+                            ContactState         &state,
+                            const Progress       &progress = {});
+
+    /** The initial guess of this mesh, made admissible. */
+    ContactState make_guess(VectorType &u) const;
+
+    /** Takes something as the solution on this mesh. */
+    void accept(const VectorType   &u,
+                const ContactState &state,
+                const SolverReport &report);
+
+    /** Of the accepted solution. */
+    ErrorEstimate estimate() const;
+
+    /** Whether the parameters do not want a finer mesh than this. */
+    bool is_last() const;
+
+    /**
+     * Flags cells for refinement as the parameters say.
+     * @param estimate  only needed if refinement is adaptive.
+     * @return whether there is anything to refine.
+     */
+    bool mark(const ErrorEstimate &estimate);
+
+    /** Flags all cells. */
+    void mark_all();
+
+    /** Refines what is flagged, discretises anew, and interpolates the solution
+     * to be the next guess. */
+    void refine();
+
+    const Scene<dim> &
+    scene() const
+    {
+      return the_scene;
+    }
+
+    parallel::distributed::Triangulation<dim> &
+    mesh()
+    {
+      return *triangulation;
+    }
+
+    const Discretization<dim> &
+    discretization() const
+    {
+      return the_discretization;
+    }
+
+    /** The number of refinements of the first mesh. */
+    unsigned int
+    level() const
+    {
+      return the_level;
+    }
+
+    /** What has been interpolated to this mesh: displacement and contact
+     * tractions. */
+    std::vector<VectorType *>
+    guess()
+    {
+      return {&guessed_displacement, &guessed_tractions};
+    }
+
+    /** The accepted solution, with ghosts of deal.II and hanging nodes. */
+    const VectorType &
+    displacement() const
+    {
+      return u;
+    }
+
+    /** Stresses on the contact boundary, likewise. */
+    const VectorType &
+    tractions() const
+    {
+      return contact_stresses;
+    }
+
+    const ContactState &
+    state() const
+    {
+      return contact_state;
+    }
+
+    const SolverReport &
+    report() const
+    {
+      return last_report;
+    }
+
+    /** Wall time: of the discretisation of this mesh and the last solver's
+     * set-up on it, and of that solution. */
+    double
+    setup_seconds() const
+    {
+      return discretization_seconds + solver_setup_seconds;
+    }
+
+    double
+    solve_seconds() const
+    {
+      return solution_seconds;
+    }
+
+  private:
+    const Parameters    parameters;
+    const Scene<dim>    the_scene;
+    const CellForm<dim> bilinear_form;
+
+    std::unique_ptr<parallel::distributed::Triangulation<dim>> triangulation;
+    Discretization<dim> the_discretization;
+    unsigned int        the_level = 0;
+
+    VectorType   guessed_displacement, guessed_tractions;
+    VectorType   u, contact_stresses;
+    ContactState contact_state;
+    SolverReport last_report;
+    double       discretization_seconds = 0, solver_setup_seconds = 0,
+           solution_seconds = 0;
+  };
+} // namespace Friction
+
+#endif

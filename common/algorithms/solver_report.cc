@@ -1,0 +1,28 @@
+#include <common/algorithms/solver_report.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Friction
+{
+  double
+  SolverReport::rho_tau_as_printed() const
+  {
+    double logarithm = 0;
+    for (const double change : outer_changes)
+      logarithm += std::log(std::max(change, 1e-300));
+    return outer_changes.empty() ? 0.
+                                 : std::exp(logarithm / outer_changes.size());
+  }
+
+
+
+  double
+  SolverReport::rho_tau_contraction() const
+  {
+    if (outer_changes.size() < 2 || outer_changes.front() == 0)
+      return 0.;
+    return std::pow(outer_changes.back() / outer_changes.front(),
+                    1. / (outer_changes.size() - 1));
+  }
+} // namespace Friction

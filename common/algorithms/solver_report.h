@@ -1,0 +1,80 @@
+#ifndef friction_algorithms_solver_report_h
+#define friction_algorithms_solver_report_h
+
+#include <common/algorithms/multigrid_loop.h>
+#include <common/contact/certificate.h>
+#include <common/parallel/phase_costs.h>
+
+#include <string>
+#include <vector>
+
+namespace Friction
+{
+  /** One of several attempts at the same problem, see SafeguardedSolver. */
+  struct SolverAttempt
+  {
+    std::string  name; ///< of the method, for a message
+    unsigned int cycles      = 0;
+    bool         converged   = false;
+    double       certificate = 0; ///< its largest violation
+  };
+
+
+
+  /** How the solution of a contact problem with friction went. */
+  struct SolverReport
+  {
+    bool converged = false;
+
+    /// Whether the last multigrid solution has converged, whatever the outer
+    /// iteration and the certificate say.
+    bool inner_converged = false;
+
+    /// Multigrid solutions with given normal forces: those of Algorithm 2, one
+    /// otherwise.
+    unsigned int outer_iterations = 0;
+
+    /// All multigrid cycles, of all outer iterations.
+    std::vector<CycleInfo> cycles;
+
+    /// Mean contraction of the increments per cycle (Algorithm 2: in the first
+    /// outer iteration).
+    double contraction = 0;
+
+    /// Energy norm of the error of the iteration, see MultigridResult; without
+    /// what the outer iteration of Algorithm 2 adds to it.
+    double algebraic_error = 0;
+
+    /// What SafeguardedSolver has tried, in this order; empty if the first
+    /// attempt was enough.
+    std::vector<SolverAttempt> attempts;
+
+    /// Algorithm 2: the relative change of the normal forces in each outer
+    /// iteration.
+    std::vector<double> outer_changes;
+
+    /// $\rho_\tau$ as printed in the thesis: the geometric mean of the relative
+    /// changes. Zero if there are none.
+    double rho_tau_as_printed() const;
+
+    /// The mean contraction of the relative changes per outer iteration, which
+    /// is what the tabulated numbers fit. Zero if there are fewer than two.
+    double rho_tau_contraction() const;
+
+    Certificate certificate;
+
+    /// What this process has spent on the solution, by phase.
+    PhaseCosts costs{};
+
+    /// Bytes on this process: of the leaf matrix, and of smoother and
+    /// correction.
+    std::size_t matrix_memory = 0;
+    std::size_t solver_memory = 0;
+
+    /// The energy of the solution, and its residual f - A u at all nodes.
+    double     energy = 0;
+    VectorType residual;
+  };
+} // namespace Friction
+
+#endif

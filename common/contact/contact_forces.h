@@ -1,0 +1,40 @@
+#ifndef friction_contact_contact_forces_h
+#define friction_contact_contact_forces_h
+
+#include <common/contact/contact_state.h>
+#include <common/discretization/contact_boundary.h>
+
+namespace Friction
+{
+  /**
+   * The force of the obstacle on the body at a contact node, from the residual
+   * f - A u. In a direction in which the displacement is prescribed the
+   * residual is the reaction of whatever holds the node there, and no contact
+   * force.
+   */
+  template <int dim>
+  Tensor<1, dim> contact_force(const ContactNode<dim> &p,
+                               const VectorType       &residual);
+
+  /** Sets the normal forces of the friction bounds to those of the displacement
+   * with this residual f - A u, at nodes in contact, and to zero elsewhere. */
+  template <int dim>
+  void set_normal_forces(const ContactBoundary<dim> &contact,
+                         const VectorType           &residual,
+                         ContactState               &state);
+
+  /**
+   * Nodal contact forces turned into a field of stresses on the contact
+   * boundary, for interpolation to another mesh, for the error estimator and
+   * for output: force on the body over nodal measure at the nodes that are in
+   * contact, zero at all other nodes.
+   *
+   * @param residual  f - A u, in whose layout the result is.
+   */
+  template <int dim>
+  VectorType contact_tractions(const ContactBoundary<dim> &contact,
+                               const VectorType           &residual,
+                               const ContactState         &state);
+} // namespace Friction
+
+#endif

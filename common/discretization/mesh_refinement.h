@@ -1,0 +1,27 @@
+#ifndef friction_discretization_mesh_refinement_h
+#define friction_discretization_mesh_refinement_h
+
+#include <common/discretization/discretization.h>
+
+#include <deal.II/distributed/tria.h>
+
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * Refines the cells of @p mesh that are flagged, sets up @p discretization
+   * anew (without assembling), and interpolates vectors to the new mesh.
+   * Collective.
+   *
+   * @param mesh     that of the discretisation. Cells are not coarsened.
+   * @param vectors  on the leaf mesh, with ghosts that are up to date; on
+   *                 return with the layout of the new one.
+   */
+  template <int dim>
+  void refine_mesh(parallel::distributed::Triangulation<dim> &mesh,
+                   Discretization<dim>                       &discretization,
+                   const std::vector<VectorType *>           &vectors);
+} // namespace Friction
+
+#endif

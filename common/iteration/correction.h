@@ -1,0 +1,46 @@
+#ifndef friction_iteration_correction_h
+#define friction_iteration_correction_h
+
+#include <common/iteration/iterate.h>
+#include <common/iteration/linearization.h>
+
+#include <cstddef>
+
+namespace Friction
+{
+  /**
+   * The fourth part of a step: proposes a correction of a smoothed iterate,
+   * from the problem linearised there on truncated functions,
+   * $T(A+\omega'')T\,v=r$. It need not solve it; what it may do to the energy,
+   * the fifth part finds out.
+   *
+   * There are three of them: TruncatedCorrection, one multigrid cycle;
+   * MonotoneCorrection, a cycle that observes bounds; AlgebraicCorrection, a
+   * solution on the leaf mesh without any levels.
+   */
+  template <int dim>
+  class Correction
+  {
+  public:
+    virtual ~Correction() = default;
+
+    /** Follows the phases, and what else the correction wants to know of the
+     * iterate @p x that has been linearised. Returns the number of block rows
+     * of matrices that this process has computed anew. Collective. */
+    virtual std::size_t
+    update(const Linearization<dim> &linearization, const Iterate &x) = 0;
+
+    /**
+     * Computes a correction. Collective.
+     * @param v  on return the correction at the leaf nodes, truncated: T v = v.
+     *           Values at hanging nodes are zero.
+     * @param r  truncated residual at the leaf nodes.
+     */
+    virtual void apply(VectorType &v, const VectorType &r) = 0;
+
+    /** Of vectors and matrices of its own, in bytes on this process. */
+    virtual std::size_t memory_consumption() const = 0;
+  };
+} // namespace Friction
+
+#endif

@@ -1,0 +1,178 @@
+#include <common/iteration/step_control.h>
+#include <common/parallel/reductions.h>
+
+#include <array>
+
+namespace Friction
+{
+  namespace
+  {
+    // Steps that have to be shortened to less than this are suspicious.
+    constexpr double short_step = .1;
+  } // namespace
+
+
+
+  template <int dim>
+  FullStep<dim>::FullStep(const TrescaFunctional<dim> &functional)
+    : functional(functional)
+  {}
+
+
+
+  template <int dim>
+  double
+  FullStep<dim>::advance(Iterate    &x,
+                         VectorType &v,
+                         const VectorType &,
+                         const Truncation<dim> &)
+  {
+    functional.project(v, x.u);
+    x.u += v;
+    return 1.;
+  }
+
+
+
+  template <int dim>
+  LineSearch<dim>::LineSearch(const TrescaFunctional<dim> &functional,
+                              const double                 largest_step,
+                              const unsigned int           recombined_steps)
+    : functional(functional)
+    , problem(functional.discrete_problem())
+    , largest_step(largest_step)
+    , recombination(problem, recombined_steps)
+  {}
+
+
+
+  template <int dim>
+  void
+  LineSearch<dim>::begin()
+  {
+    recombination.clear();
+  }
+
+
+
+  template <int dim>
+  double
+  LineSearch<dim>::advance(Iterate               &x,
+                           VectorType            &v,
+                           const VectorType      &r,
+                           const Truncation<dim> &truncation)
+  {
+    const PhaseScope phase(problem.communicator(), SolverPhase::line_search);
+    Av.reinit(v, true);
+    problem.stiffness.vmult(Av, v);
+    recombination.add_iterate(x.u, x.residual);
+    recombination.improve(v, Av, r, truncation);
+
+    // Where a node would have to reverse its slip, the linearisation knows
+    // nothing of what comes. A single such node would hold up all others in the
+    // line search; it rather stops, and the relaxation decides how it goes on.
+    whole                        = v;
+    const unsigned int n_stopped = functional.keep_slip(v, x.u, x.state);
+    Products   products = products_along(v, x.residual, n_stopped);
+    const bool stopped  = products.n_changed > 0;
+    if (stopped)
+      {
+        problem.stiffness.vmult(Av, v);
+        products = products_along(v, x.residual, 0);
+      }
+    if (!(products.curvature > 0))
+      return 0.;
+    double length = functional.minimize_along(
+      v, x, products.slope, products.curvature, largest_step);
+    v *= length;
+    const bool cut_off = true_on_any_process(functional.project(v, x.u) > 0,
+                                             problem.communicator());
+    // The obstacle has cut the correction off: minimise along what is left of
+    // it, as far as that is admissible.
+    if (cut_off)
+      length *= minimize_within_obstacle(x, v);
+    if (length < short_step && (cut_off || stopped))
+      length = try_whole_correction(x, v, length);
+    x.u += v;
+    return length;
+  }
+
+
+
+  // Scales v, as far as it is admissible. Returns the factor.
+  template <int dim>
+  double
+  LineSearch<dim>::minimize_within_obstacle(const Iterate &x, VectorType &v)
+  {
+    problem.stiffness.vmult(Av, v);
+    const Products products = products_along(v, x.residual, 0);
+    const double   length   = functional.minimize_along(
+      v,
+      x,
+      products.slope,
+      products.curvature,
+      functional.admissible_length(v, x.u, largest_step));
+    v *= length;
+    return length;
+  }
+
+
+
+  // A correction that turns a long thin body around one end of its contact
+  // boundary, and that has been changed at the other end, is no longer a
+  // rotation, and the body is far too stiff for what it has become: hardly
+  // anything is left of it. It is better to go all of it, but only until the
+  // next node touches; the line search knows what it costs that nodes reverse
+  // their slip. Of the two steps the one is taken that lowers the energy more.
+  //
+  // On call v is the first step and length what it is of its correction; on
+  // return they are those of the better step.
+  template <int dim>
+  double
+  LineSearch<dim>::try_whole_correction(const Iterate &x,
+                                        VectorType    &v,
+                                        const double   length)
+  {
+    const double other_length = minimize_within_obstacle(x, whole);
+    functional.project(whole, x.u);
+
+    VectorType moved(v), r(v);
+    const auto energy_after = [&](const VectorType &step) {
+      problem.stiffness.vmult(Av, step);
+      moved = x.u;
+      moved += step;
+      r = x.residual;
+      r -= Av;
+      return functional.energy(moved, r, x.state);
+    };
+    if (!(energy_after(whole) < energy_after(v)))
+      return length;
+    v = whole;
+    return other_length;
+  }
+
+
+
+  template <int dim>
+  typename LineSearch<dim>::Products
+  LineSearch<dim>::products_along(const VectorType  &v,
+                                  const VectorType  &residual,
+                                  const unsigned int n_changed) const
+  {
+    std::array<double, 3> sums{{0., 0., 1. * n_changed}};
+    for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
+      {
+        sums[0] += residual.local_element(i) * v.local_element(i);
+        sums[1] += v.local_element(i) * Av.local_element(i);
+      }
+    sums = sum_over_processes(sums, problem.communicator());
+    return {sums[0], sums[1], static_cast<std::size_t>(sums[2])};
+  }
+
+
+
+  template class FullStep<2>;
+  template class FullStep<3>;
+  template class LineSearch<2>;
+  template class LineSearch<3>;
+} // namespace Friction

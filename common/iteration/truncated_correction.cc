@@ -1,0 +1,175 @@
+#include <common/iteration/truncated_correction.h>
+
+namespace Friction
+{
+  template <int dim>
+  TruncatedCorrection<dim>::TruncatedCorrection(
+    Levels<dim>       &levels,
+    const Cycle        cycle,
+    const unsigned int smoothing_steps)
+    : levels(levels)
+    , cycle_parameter(cycle == Cycle::V ? 1 : 2)
+    , smoothing_steps(smoothing_steps)
+  {
+    const unsigned int n = levels.n_correction_levels();
+    for (unsigned int k = 0; k < n; ++k)
+      {
+        rhs.push_back(levels.vector(k));
+        correction.push_back(levels.vector(k));
+        work.push_back(levels.vector(k));
+        start.push_back(levels.vector(k == 0 ? 0 : k - 1));
+      }
+    for (unsigned int k = 0; k < levels.hierarchy().n_levels(); ++k)
+      defect.push_back(levels.vector(k));
+  }
+
+
+
+  template <int dim>
+  std::size_t
+  TruncatedCorrection<dim>::update(const Linearization<dim> &linearization,
+                                   const Iterate &)
+  {
+    return levels.update(linearization.truncation());
+  }
+
+
+
+  template <int dim>
+  void
+  TruncatedCorrection<dim>::apply(VectorType &v, const VectorType &r)
+  {
+    const PhaseScope phase(levels.communicator(), SolverPhase::transfer);
+    const LevelTransfer<dim> &transfer = levels.transfer();
+
+    // If there is but one level, there is no cycle, but a direct solve.
+    const unsigned int finest = levels.hierarchy().n_levels() - 1;
+    const unsigned int top    = finest == 0 ? 0 : finest - 1;
+    leaf_residual             = &r;
+    if (finest > 0)
+      {
+        defect[finest] = 0.;
+        transfer.add_from_leaf(finest, defect[finest], r);
+      }
+    for (VectorType &c : correction)
+      c = 0.;
+    restrict_residual(top);
+    for (unsigned int i = 0; i < (top == 0 ? 1 : cycle_parameter); ++i)
+      visit(top);
+
+    // Each leaf node takes its correction from its finest level.
+    v = 0.;
+    for (unsigned int k = 0; k <= top; ++k)
+      transfer.copy_to_leaf(k, v, correction[k]);
+    if (finest > 0)
+      {
+        defect[finest] = 0.;
+        transfer.prolongate_and_add(finest, defect[finest], correction[top]);
+        transfer.copy_to_leaf(finest, v, defect[finest]);
+      }
+    levels.matrices().current_truncation().apply(v.begin());
+  }
+
+
+
+  // A W-cycle comes here more than once with the same right hand side. The
+  // correction of each level then accumulates, and what a level has passed down
+  // before is taken out of the defect, because the coarser levels remember it.
+  template <int dim>
+  void
+  TruncatedCorrection<dim>::visit(const unsigned int k)
+  {
+    if (k == 0)
+      {
+        solve_coarsest();
+        return;
+      }
+
+    const LevelTransfer<dim> &transfer = levels.transfer();
+    VectorType               &c        = correction[k];
+    VectorType               &coarse   = correction[k - 1];
+    VectorType               &before   = start[k];
+    before                             = coarse;
+    if (cycle_parameter == 1)
+      relax(k, false, &defect[k]);
+    else
+      {
+        // Defect of everything but the part inherited from below.
+        relax(k, false, nullptr);
+        VectorType &own = work[k];
+        own             = 0.;
+        transfer.prolongate_and_add(k, own, coarse);
+        own.sadd(-1., 1., c);
+        const PhaseScope phase(levels.communicator(),
+                               SolverPhase::coarse_sweeps);
+        levels.coupled_ghosts(k).update(own.begin(), dim);
+        levels.matrices().matrix(k).residual(
+          defect[k].begin(), rhs[k].begin(), own.begin());
+      }
+    restrict_residual(k - 1);
+
+    for (unsigned int i = 0; i < (k == 1 ? 1 : cycle_parameter); ++i)
+      visit(k - 1);
+
+    before.sadd(-1., 1., coarse);
+    transfer.prolongate_and_add(k, c, before);
+    levels.coupled_ghosts(k).update(c.begin(), dim);
+    relax(k, true, nullptr);
+  }
+
+
+
+  // The residual of a level: that of its own leaf nodes, and what the next
+  // finer level leaves over.
+  template <int dim>
+  void
+  TruncatedCorrection<dim>::restrict_residual(const unsigned int k)
+  {
+    const LevelTransfer<dim> &transfer = levels.transfer();
+    rhs[k]                             = 0.;
+    if (k + 1 < levels.hierarchy().n_levels())
+      transfer.restrict_and_add(k + 1, rhs[k], defect[k + 1]);
+    transfer.add_from_leaf(k, rhs[k], *leaf_residual);
+    prepare_visits(k);
+  }
+
+
+
+  template <int dim>
+  void
+  TruncatedCorrection<dim>::relax(const unsigned int k,
+                                  const bool         backwards,
+                                  VectorType        *defect_after)
+  {
+    levels.relax(
+      k, correction[k], rhs[k], backwards, smoothing_steps, defect_after);
+  }
+
+
+
+  template <int dim>
+  void
+  TruncatedCorrection<dim>::solve_coarsest()
+  {
+    const PhaseScope phase(levels.communicator(), SolverPhase::coarsest);
+    levels.coarsest_solver().solve(correction[0].begin(), rhs[0].begin());
+  }
+
+
+
+  template <int dim>
+  std::size_t
+  TruncatedCorrection<dim>::memory_consumption() const
+  {
+    std::size_t bytes = 0;
+    for (const auto &vectors : {&rhs, &correction, &start, &defect, &work})
+      for (const VectorType &vector : *vectors)
+        bytes += vector.memory_consumption();
+    return bytes;
+  }
+
+
+
+  template class TruncatedCorrection<2>;
+  template class TruncatedCorrection<3>;
+} // namespace Friction

@@ -1,0 +1,82 @@
+#ifndef friction_iteration_truncated_correction_h
+#define friction_iteration_truncated_correction_h
+
+#include <common/iteration/correction.h>
+#include <common/levels/levels.h>
+
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * One multigrid cycle for the truncated linear problem
+   * $T(A+\omega'')T\,v = r$: everything below the leaf mesh.
+   *
+   * Restricted residuals go down, block Gauss-Seidel relaxes each level
+   * forwards before and backwards after the coarser levels, so that the V-cycle
+   * is a symmetric positive definite operator, and the coarsest level is solved
+   * by CoarsestSolver. With local refinement a level sees residuals from two
+   * sides: those of its own leaf nodes, and those restricted from the next
+   * finer level. The finest level has no unknowns of its own, since the leading
+   * relaxation has been there: it only passes residuals down and corrections
+   * up.
+   *
+   * The recursion is our own: that of deal.II's class Multigrid runs W-cycles
+   * as V-cycles in the releases up to 9.7, relaxes the finest level like all
+   * others, and its edge matrices are those of local smoothing without
+   * truncation.
+   */
+  template <int dim>
+  class TruncatedCorrection : public Correction<dim>
+  {
+  public:
+    /** @p levels is kept by reference. */
+    TruncatedCorrection(Levels<dim>       &levels,
+                        const Cycle        cycle,
+                        const unsigned int smoothing_steps);
+
+    std::size_t
+    update(const Linearization<dim> &linearization, const Iterate &x) override;
+
+    void apply(VectorType &v, const VectorType &r) override;
+
+    std::size_t memory_consumption() const override;
+
+  protected:
+    Levels<dim> &levels;
+
+    // Per level: right hand side, correction, what the next coarser level had
+    // when the visit began, and vectors of work. The corrections of a W-cycle
+    // accumulate over its visits to a level. The finest level only has a
+    // defect: the residuals of its leaf nodes, and on the way up their
+    // corrections.
+    std::vector<VectorType> rhs, correction, start, defect, work;
+
+    // What a cycle with bounds does in another way: to get ready for the
+    // visits to a level that has got its right hand side, to relax it, and to
+    // solve on the coarsest level.
+    virtual void
+    prepare_visits(const unsigned int /*level*/)
+    {}
+
+    virtual void relax(const unsigned int level,
+                       const bool         backwards,
+                       VectorType        *defect_after);
+
+    virtual void solve_coarsest();
+
+  private:
+    const unsigned int cycle_parameter;
+
+    const VectorType *leaf_residual = nullptr;
+
+    void visit(const unsigned int level);
+
+    void restrict_residual(const unsigned int level);
+
+  protected:
+    const unsigned int smoothing_steps;
+  };
+} // namespace Friction
+
+#endif

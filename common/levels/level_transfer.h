@@ -1,0 +1,77 @@
+#ifndef friction_levels_level_transfer_h
+#define friction_levels_level_transfer_h
+
+#include <common/levels/level_hierarchy.h>
+
+#include <deal.II/multigrid/mg_constrained_dofs.h>
+#include <deal.II/multigrid/mg_transfer_matrix_free.h>
+
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * How residuals come down and corrections go up.
+   *
+   * Between two levels this is deal.II's MGTransferMatrixFree, as in step-50
+   * and step-75. Between the leaf mesh and the levels it is a class of our own,
+   * for two reasons. deal.II's copy_to_mg() puts the residual of a node at the
+   * boundary of a refined region on the coarser of its levels, where its
+   * function is smooth; here it enters on the finest level $f(p)$ that has the
+   * node, since the level matrices are Galerkin products of the leaf matrix,
+   * and the leaf function is among those of level $f(p)$. And what moves up and
+   * down here is not $Au$ but a truncated residual, zero at nodes that hang.
+   *
+   * Vectors of a level have the layout of Level::partitioner(). Of those of
+   * deal.II's functions only owned values are read and written, so that the
+   * ghosts may be those that our own sweeps need.
+   */
+  template <int dim>
+  class LevelTransfer
+  {
+  public:
+    /** Collective. @p hierarchy is kept by reference. */
+    LevelTransfer(const DoFHandler<dim>     &dof_handler,
+                  const LevelHierarchy<dim> &hierarchy);
+
+    /** coarse += P^T fine, from level @p k to the next coarser one.
+     * Collective. */
+    void restrict_and_add(const unsigned int k,
+                          VectorType        &coarse,
+                          const VectorType  &fine) const;
+
+    /** fine += P coarse, from level @p k - 1 to level @p k. Collective. */
+    void prolongate_and_add(const unsigned int k,
+                            VectorType        &fine,
+                            const VectorType  &coarse) const;
+
+    /** Adds the values of the leaf nodes whose finest level is @p k to those of
+     * their level nodes. Collective. */
+    void add_from_leaf(const unsigned int k,
+                       VectorType        &level,
+                       const VectorType  &leaf) const;
+
+    /** The way back: sets the values of the leaf nodes whose finest level is
+     * @p k; other leaf nodes stay as they are. Collective. */
+    void copy_to_leaf(const unsigned int k,
+                      VectorType        &leaf,
+                      const VectorType  &level) const;
+
+    std::size_t
+    memory_consumption() const
+    {
+      return transfer.memory_consumption();
+    }
+
+  private:
+    const LevelHierarchy<dim>        &hierarchy;
+    MGConstrainedDoFs                 mg_constrained_dofs;
+    MGTransferMatrixFree<dim, double> transfer;
+
+    // Level nodes of other processes at this process' leaf nodes; buffers
+    // change.
+    mutable std::vector<GhostExchange> ghosts_at_leaf_nodes;
+  };
+} // namespace Friction
+
+#endif

@@ -1,0 +1,124 @@
+#ifndef friction_levels_levels_h
+#define friction_levels_levels_h
+
+#include <common/discretization/discrete_problem.h>
+#include <common/levels/coarsest_solver.h>
+#include <common/levels/level_hierarchy.h>
+#include <common/levels/level_matrices.h>
+#include <common/levels/level_transfer.h>
+#include <common/nodes/sweep_schedule.h>
+#include <common/parallel/ghost_exchange.h>
+
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * All that belongs to the levels below the leaf mesh, made once per mesh and
+   * shared by all corrections:
+   * - LevelHierarchy: which nodes a level has, which of them are relaxed, and
+   *   how they hang together with those of the next levels and of the leaf
+   *   mesh;
+   * - LevelTransfer: residuals down, corrections up;
+   * - LevelMatrices: the Galerkin matrices, which follow the truncation;
+   * - relaxation, and the solver of the coarsest level.
+   *
+   * A correction adds vectors to this, and the order in which levels are
+   * visited.
+   */
+  template <int dim>
+  class Levels
+  {
+  public:
+    /**
+     * Collective.
+     * @param dof_handler  with leaf and level degrees of freedom.
+     * @param problem      on its leaf mesh; kept by reference, as is what it
+     *                     refers to.
+     */
+    Levels(
+      const DoFHandler<dim>      &dof_handler,
+      const DiscreteProblem<dim> &problem,
+      const CoarsestMethod coarsest_method = CoarsestMethod::automatic);
+
+    const LevelHierarchy<dim> &
+    hierarchy() const
+    {
+      return level_hierarchy;
+    }
+
+    const LevelTransfer<dim> &
+    transfer() const
+    {
+      return level_transfer;
+    }
+
+    const LevelMatrices<dim> &
+    matrices() const
+    {
+      return level_matrices;
+    }
+
+    CoarsestSolver<dim> &
+    coarsest_solver()
+    {
+      return coarsest;
+    }
+
+    MPI_Comm
+    communicator() const
+    {
+      return problem.communicator();
+    }
+
+    /** The number of correction levels, which have matrices. */
+    unsigned int
+    n_correction_levels() const
+    {
+      return level_matrices.n_levels();
+    }
+
+    /** A vector of zeros for level @p k, with the ghosts of Level. */
+    VectorType
+    vector(const unsigned int k) const
+    {
+      return VectorType(level_hierarchy.level(k).partitioner());
+    }
+
+    /** The values that owned rows of level @p k couple to. */
+    GhostExchange &
+    coupled_ghosts(const unsigned int k)
+    {
+      return coupled[k];
+    }
+
+    /** Has the matrices follow a change of phases; see
+     * LevelMatrices::update(). */
+    std::size_t update(const Truncation<dim> &truncation);
+
+    /**
+     * Gauss-Seidel sweeps for B_k c = b at the nodes of a level that are to be
+     * relaxed. The ghosts of @p c must be valid, and are on return.
+     * @param defect  if not null, b - B_k c on return.
+     */
+    void relax(const unsigned int k,
+               VectorType        &c,
+               const VectorType  &b,
+               const bool         backwards,
+               const unsigned int n_sweeps,
+               VectorType        *defect = nullptr);
+
+    std::size_t memory_consumption() const;
+
+  private:
+    const DiscreteProblem<dim>     &problem;
+    const LevelHierarchy<dim>       level_hierarchy;
+    const LevelTransfer<dim>        level_transfer;
+    LevelMatrices<dim>              level_matrices;
+    CoarsestSolver<dim>             coarsest;
+    std::vector<SweepSchedule<dim>> schedules;
+    std::vector<GhostExchange>      coupled;
+  };
+} // namespace Friction
+
+#endif

@@ -1,0 +1,71 @@
+#ifndef friction_tests_support_discretized_h
+#define friction_tests_support_discretized_h
+
+#include <common/discretization/discretization.h>
+
+#include <vector>
+
+namespace Tests
+{
+  using namespace dealii;
+  using namespace Friction;
+
+  /** A scene discretised and assembled on a mesh. */
+  template <int dim>
+  class Discretized : public Discretization<dim>
+  {
+  public:
+    Discretized(const Scene<dim> &scene, const Triangulation<dim> &mesh)
+      : Discretization<dim>(scene, mesh)
+    {
+      this->set_up();
+      this->assemble(elasticity<dim>(scene.material()));
+    }
+  };
+
+
+
+  /** Zero, but for prescribed values, and moved out of the obstacle. */
+  template <int dim>
+  VectorType
+  admissible_start(const Discretization<dim> &d)
+  {
+    VectorType u = d.vector();
+    d.constraints().impose(u);
+    for (const ContactNode<dim> &node : d.contact())
+      {
+        const double excess = normal_component(node, u) - node.gap;
+        if (excess > 0)
+          for (unsigned int c = 0; c < dim; ++c)
+            u.local_element(dim * node.node + c) -= excess * node.normal()[c];
+      }
+    return u;
+  }
+
+
+
+  /** The points of all nodes, by node number. */
+  template <int dim>
+  std::vector<Point<dim>>
+  node_points(const Discretization<dim> &d)
+  {
+    std::vector<Point<dim>> points(d.constraints().n_nodes());
+    for (const auto &cell : d.dof_handler().active_cell_iterators())
+      for (const unsigned int v : cell->vertex_indices())
+        points[d.constraints().node_of_dof(cell->vertex_dof_index(v, 0))] =
+          cell->vertex(v);
+    return points;
+  }
+
+
+
+  /** The settings for a test that wants to see the first attempt fail. */
+  inline SolverSettings
+  without_safeguards(SolverSettings settings)
+  {
+    settings.safeguards = false;
+    return settings;
+  }
+} // namespace Tests
+
+#endif
