@@ -61,7 +61,7 @@ namespace Friction
     const bool                  coulomb = problem.has_coulomb_friction();
     const PhaseCosts before = phase_costs(problem.communicator());
 
-    Iterate x = {u, state};
+    Iterate x(u, state);
     if (coulomb && settings.algorithm == Algorithm::fixed_point)
       iterate_normal_forces(report, x, progress);
     else

@@ -13,7 +13,7 @@ namespace Friction
   NestedIteration<dim>::NestedIteration(const Parameters    &parameters,
                                         const CellForm<dim> &form,
                                         const MPI_Comm       communicator)
-    : parameters(parameters)
+    : the_parameters(parameters)
     , the_scene(parameters)
     , bilinear_form(form ? form : elasticity<dim>(the_scene.material()))
     , triangulation(make_triangulation<dim>(communicator))
@@ -28,7 +28,7 @@ namespace Friction
   NestedIteration<dim>::begin()
   {
     the_scene.make_coarse_mesh(*triangulation);
-    triangulation->refine_global(parameters.refinement.initial_refinements);
+    triangulation->refine_global(the_parameters.refinement.initial_refinements);
     begin_on_level(0);
   }
 
@@ -38,13 +38,11 @@ namespace Friction
   void
   NestedIteration<dim>::begin_on_level(const unsigned int level)
   {
-    Timer timer;
     the_level = level;
     the_discretization.set_up();
     the_discretization.assemble(bilinear_form);
-    guessed_displacement   = the_discretization.vector();
-    guessed_tractions      = guessed_displacement;
-    discretization_seconds = timer.wall_time();
+    guessed_displacement = the_discretization.vector();
+    guessed_tractions    = guessed_displacement;
   }
 
 
@@ -86,7 +84,7 @@ namespace Friction
     VectorType         solution;
     ContactState       state(0, false);
     const SolverReport report =
-      solve_with(parameters.solver, solution, state, progress);
+      solve_with(the_parameters.solver, solution, state, progress);
     accept(solution, state, report);
     return last_report;
   }
@@ -123,9 +121,9 @@ namespace Friction
   bool
   NestedIteration<dim>::is_last() const
   {
-    return the_level >= parameters.refinement.levels ||
+    return the_level >= the_parameters.refinement.levels ||
       the_discretization.dof_handler().n_dofs() >=
-      parameters.refinement.maximum_dofs;
+      the_parameters.refinement.maximum_dofs;
   }
 
 
@@ -143,15 +141,15 @@ namespace Friction
   bool
   NestedIteration<dim>::mark(const ErrorEstimate &estimate)
   {
-    if (parameters.refinement.strategy == RefinementStrategy::uniform)
+    if (the_parameters.refinement.strategy == RefinementStrategy::uniform)
       {
         mark_all();
         return true;
       }
     bool any = mark_by_maximum(*triangulation,
                                estimate.cell_errors,
-                               parameters.refinement.marking) > 0;
-    if (parameters.refinement.contact_zone)
+                               the_parameters.refinement.marking) > 0;
+    if (the_parameters.refinement.contact_zone)
       any |= mark_contact_zone(the_discretization, contact_state);
     return any;
   }
@@ -167,12 +165,26 @@ namespace Friction
     guessed_tractions    = contact_stresses;
     guessed_displacement.update_ghost_values();
     guessed_tractions.update_ghost_values();
-    Timer timer;
     refine_mesh(*triangulation,
                 the_discretization,
                 {&guessed_displacement, &guessed_tractions});
     the_discretization.assemble(bilinear_form);
-    discretization_seconds = timer.wall_time();
+  }
+
+
+
+  template <int dim>
+  bool
+  NestedIteration<dim>::advance()
+  {
+    if (is_last())
+      return false;
+    const bool adaptive =
+      the_parameters.refinement.strategy == RefinementStrategy::adaptive;
+    if (!mark(adaptive ? estimate() : ErrorEstimate()))
+      return false;
+    refine();
+    return true;
   }
 
 

@@ -75,6 +75,16 @@ namespace Friction
      * to be the next guess. */
     void refine();
 
+    /** All of that: goes on to the next mesh, unless this is the last one or
+     * there is nothing to refine. */
+    bool advance();
+
+    const Parameters &
+    parameters() const
+    {
+      return the_parameters;
+    }
+
     const Scene<dim> &
     scene() const
     {
@@ -139,7 +149,7 @@ namespace Friction
     double
     setup_seconds() const
     {
-      return discretization_seconds + solver_setup_seconds;
+      return the_discretization.setup_seconds() + solver_setup_seconds;
     }
 
     double
@@ -149,7 +159,7 @@ namespace Friction
     }
 
   private:
-    const Parameters    parameters;
+    const Parameters    the_parameters;
     const Scene<dim>    the_scene;
     const CellForm<dim> bilinear_form;
 
@@ -161,8 +171,7 @@ namespace Friction
     VectorType   u, contact_stresses;
     ContactState contact_state;
     SolverReport last_report;
-    double       discretization_seconds = 0, solver_setup_seconds = 0,
-           solution_seconds = 0;
+    double       solver_setup_seconds = 0, solution_seconds = 0;
   };
 } // namespace Friction
 

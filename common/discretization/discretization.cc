@@ -4,6 +4,7 @@
 #include <common/discretization/node_numbering.h>
 
 #include <deal.II/base/quadrature_lib.h>
+#include <deal.II/base/timer.h>
 
 #include <deal.II/dofs/dof_tools.h>
 
@@ -56,12 +57,24 @@ namespace Friction
   void
   Discretization<dim>::set_up()
   {
+    Timer timer;
     dofs.distribute_dofs(fe);
     dofs.distribute_mg_dofs();
     renumber_nodes(dofs);
     find_constraints();
     contact_boundary = std::make_unique<ContactBoundary<dim>>(
       the_mapping, dofs, hanging, *nodal_constraints, the_scene);
+    const FrictionLaw law = the_scene.friction_law();
+    discrete_problem      = std::make_unique<DiscreteProblem<dim>>(
+      DiscreteProblem<dim>{leaf_operator,
+                           forces,
+                           *nodal_constraints,
+                           *contact_boundary,
+                           law,
+                           law == FrictionLaw::tresca ?
+                                  1. :
+                                  the_scene.friction_coefficient()});
+    seconds_of_set_up = timer.wall_time();
   }
 
 
@@ -128,6 +141,7 @@ namespace Friction
   void
   Discretization<dim>::assemble(const CellForm<dim> &bilinear_form)
   {
+    Timer                          timer;
     TrilinosWrappers::SparseMatrix matrix;
     matrix.reinit(dofs.locally_owned_dofs(),
                   dofs.locally_owned_dofs(),
@@ -208,22 +222,7 @@ namespace Friction
       make_node_block_matrix<dim>(matrix, pattern, *nodal_constraints),
       *nodal_constraints);
     pattern.reinit(0, 0);
-  }
-
-
-
-  template <int dim>
-  DiscreteProblem<dim>
-  Discretization<dim>::problem() const
-  {
-    return {leaf_operator,
-            forces,
-            *nodal_constraints,
-            *contact_boundary,
-            the_scene.friction_law(),
-            the_scene.friction_law() == FrictionLaw::tresca ?
-              1. :
-              the_scene.friction_coefficient()};
+    seconds_of_assembly = timer.wall_time();
   }
 
 

@@ -135,14 +135,25 @@ namespace Friction
 
     /** What solvers take: references to this object, and the law of friction.
      * With Tresca's law the coefficient is 1, since what the scene gives is the
-     * bound itself. */
-    DiscreteProblem<dim> problem() const;
+     * bound itself. Valid until the next set_up(). */
+    const DiscreteProblem<dim> &
+    problem() const
+    {
+      return *discrete_problem;
+    }
 
     /** A vector of zeros on the leaf mesh. */
     VectorType
     vector() const
     {
       return VectorType(nodal_constraints->partitioner());
+    }
+
+    /** Wall time of the last set_up() and the last assemble(). */
+    double
+    setup_seconds() const
+    {
+      return seconds_of_set_up + seconds_of_assembly;
     }
 
     /** Gives hanging nodes of @p v their values, and brings all ghosts that
@@ -162,6 +173,9 @@ namespace Friction
 
     std::unique_ptr<NodalConstraints<dim>> nodal_constraints;
     std::unique_ptr<ContactBoundary<dim>>  contact_boundary;
+    std::unique_ptr<DiscreteProblem<dim>>  discrete_problem;
+
+    double seconds_of_set_up = 0, seconds_of_assembly = 0;
 
     void find_constraints();
   };

@@ -11,6 +11,14 @@ namespace Friction
    */
   struct Iterate
   {
+    Iterate(VectorType   &u,
+            ContactState &state,
+            const bool    updates_normal_forces = false)
+      : u(u)
+      , state(state)
+      , updates_normal_forces(updates_normal_forces)
+    {}
+
     /// The displacement: admissible, and with its prescribed values.
     VectorType &u;
 
@@ -20,7 +28,7 @@ namespace Friction
 
     /// Whether the normal forces are those of the displacement itself, as in
     /// Algorithm 3; otherwise they are given (Tresca).
-    bool updates_normal_forces = false;
+    bool updates_normal_forces;
 
     /// f - A u, once the leading relaxation has been there.
     VectorType residual;

@@ -47,6 +47,7 @@ namespace Friction
     /** @p problem is kept by reference. Collective. */
     Linearization(const DiscreteProblem<dim> &problem,
                   const TruncationVariant     variant);
+    Linearization(DiscreteProblem<dim> &&, const TruncationVariant) = delete;
 
     /** Determines the phases of an iterate and, in three dimensions,
      * $\omega''$; and has the neighbouring processes know them. Collective. */

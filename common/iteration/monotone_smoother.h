@@ -45,6 +45,7 @@ namespace Friction
     explicit MonotoneSmoother(
       const DiscreteProblem<dim> &problem,
       const LocalSolver local_solver = LocalSolver::secular_equation);
+    MonotoneSmoother(DiscreteProblem<dim> &&, const LocalSolver = {}) = delete;
 
     /**
      * Forward sweeps over all nodes that can move, ascending.

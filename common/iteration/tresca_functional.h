@@ -19,6 +19,7 @@ namespace Friction
   public:
     /** @p problem is kept by reference. */
     explicit TrescaFunctional(const DiscreteProblem<dim> &problem);
+    TrescaFunctional(DiscreteProblem<dim> &&) = delete;
 
     const DiscreteProblem<dim> &
     discrete_problem() const

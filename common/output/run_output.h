@@ -66,6 +66,9 @@ namespace Friction
     void add_exact_error(const ExactError &error, const bool with_order);
 
     /// A remark on a level that could not be solved.
+    /** Says why the run ends before its last level: no cell has any error. */
+    void nothing_to_refine(const ContactState &state);
+
     void add_failure(const unsigned int level, const SolverReport &report);
 
     /**

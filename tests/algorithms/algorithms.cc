@@ -7,6 +7,7 @@
 // point in all directions, everything that can be chosen about the solver leads
 // to the same solution.
 
+#include <common/algorithms/nested_iteration.h>
 #include <common/iteration/tresca_functional.h>
 
 #include <cstring>

@@ -2,6 +2,8 @@
 // other means: displacements, nodal forces and states of all nodes must be the
 // same, whatever the algorithm, the coarse correction and the cycle.
 
+#include <common/algorithms/nested_iteration.h>
+
 #include <iostream>
 
 #include <tests/support/check.h>

@@ -3,6 +3,8 @@
 // all nodes must be the same, whatever the algorithm, the coarse correction,
 // the local solver and the truncation.
 
+#include <common/algorithms/nested_iteration.h>
+
 #include <functional>
 #include <iostream>
 

@@ -2,6 +2,7 @@
 // iteration ends early, and still its error, measured against a solution to
 // rounding, is at most a tenth of the error of the discretisation.
 
+#include <common/algorithms/nested_iteration.h>
 #include <common/algorithms/discretization_stop.h>
 
 #include <iostream>

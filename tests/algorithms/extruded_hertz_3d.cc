@@ -4,6 +4,8 @@
 // the same states in each layer of nodes, forces and energy times what belongs
 // to a layer of the length.
 
+#include <common/algorithms/nested_iteration.h>
+
 #include <iostream>
 
 #include <tests/support/check.h>

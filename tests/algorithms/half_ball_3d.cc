@@ -17,6 +17,8 @@
 // itself knows nothing of d: its radius and peak pressure follow from the force
 // up to an error of order (a/R)^2.
 
+#include <common/algorithms/nested_iteration.h>
+
 #include <cmath>
 #include <iostream>
 

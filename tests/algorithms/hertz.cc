@@ -1,6 +1,8 @@
 // The half disc on a plane: the published numbers of nodes in contact and of
 // sticking ones, cycles of nested iteration, and the static contact law.
 
+#include <common/algorithms/nested_iteration.h>
+
 #include <iomanip>
 #include <iostream>
 

@@ -3,6 +3,7 @@
 // 0.4999 it is the same, with the same error, while with pointwise ones the
 // body locks. Errors and mean strains are integrated here, without the library.
 
+#include <common/algorithms/nested_iteration.h>
 #include <common/estimate/exact_error.h>
 
 #include <deal.II/base/quadrature_lib.h>

@@ -2,6 +2,8 @@
 // patch test that finite elements solve to rounding on any mesh, and a
 // manufactured solution that lifts off, slips and sticks.
 
+#include <common/algorithms/nested_iteration.h>
+
 #include <deal.II/base/quadrature_lib.h>
 
 #include <deal.II/fe/fe_values.h>

@@ -4,6 +4,8 @@
 // six times has the same discrete solution, and the geometric levels to find
 // it with.
 
+#include <common/algorithms/nested_iteration.h>
+
 #include <deal.II/grid/grid_out.h>
 
 #include <fstream>

@@ -11,6 +11,7 @@
 // friction from a tenth to a hundred times those of equilibrium; so it is asked
 // for. What the model says is looked at besides.
 
+#include <common/algorithms/nested_iteration.h>
 #include <common/iteration/coarse_cycle.h>
 #include <common/iteration/linearization.h>
 #include <common/iteration/monotone_smoother.h>

@@ -4,6 +4,8 @@
 // finer meshes: mirror symmetry, balance of forces, and cycles that
 // do not grow.
 
+#include <common/algorithms/nested_iteration.h>
+
 #include <functional>
 #include <iostream>
 #include <map>

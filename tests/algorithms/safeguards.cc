@@ -5,6 +5,7 @@
 // solutions where the first attempt fails, says what it did, and says so if it
 // failed.
 
+#include <common/algorithms/nested_iteration.h>
 #include <common/algorithms/mixed_fixed_point.h>
 #include <common/algorithms/safeguarded_solver.h>
 

@@ -7,6 +7,8 @@
 // fail. That is expected, and compared like everything else, so that a change
 // is noticed.
 
+#include <common/algorithms/nested_iteration.h>
+
 #include <iostream>
 #include <map>
 #include <vector>

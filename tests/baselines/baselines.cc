@@ -3,6 +3,8 @@
 // certified and are those of the product, displacements and numbers of nodes in
 // contact and sticking. The linear solvers agree with each other.
 
+#include <common/algorithms/nested_iteration.h>
+
 #include <tests/benchmarks/baselines/contest.h>
 
 #include <iostream>

@@ -6,6 +6,8 @@
 // Usage: benchmark-coarsest 2|3 scene.prm DIRECT n ...
 // with the largest number of unknowns for which to try the factorisation.
 
+#include <common/algorithms/nested_iteration.h>
+
 #include <deal.II/base/timer.h>
 
 #include <tests/support/discretized.h>

@@ -10,6 +10,8 @@
 //
 // Usage: benchmark-cost 2|3 scene.prm [Section/Entry=value ...]
 
+#include <common/algorithms/nested_iteration.h>
+
 #include <deal.II/base/timer.h>
 #include <deal.II/base/utilities.h>
 

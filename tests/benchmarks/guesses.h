@@ -1,6 +1,7 @@
 #ifndef friction_tests_benchmarks_guesses_h
 #define friction_tests_benchmarks_guesses_h
 
+#include <common/algorithms/nested_iteration.h>
 #include <common/input_error.h>
 
 #include <tests/support/discretized.h>

@@ -39,6 +39,7 @@
 
 #include <deal.II/grid/cell_id.h>
 
+#include <common/algorithms/nested_iteration.h>
 #include <common/estimate/exact_error.h>
 #include <common/output/level_records.h>
 #include <tests/support/discretized.h>

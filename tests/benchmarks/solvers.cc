@@ -37,6 +37,7 @@
 
 #include <deal.II/grid/grid_tools.h>
 
+#include <common/algorithms/nested_iteration.h>
 #include <common/algorithms/safeguarded_solver.h>
 
 #include <tests/benchmarks/baselines/contest.h>

@@ -18,7 +18,7 @@
 // them, its energy is not positive, and where they are infinite it is the same
 // cycle as without.
 
-#include <common/iteration/coarse_cycle.h>
+#include <common/iteration/monotone_correction.h>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Sparse>
@@ -40,6 +40,19 @@ namespace
   {
     return cycle == Cycle::V ? "V" : "W";
   }
+
+
+
+  // Levels with the discrete problem that they refer to.
+  template <int dim>
+  struct TestLevels : DiscreteProblem<dim>, Levels<dim>
+  {
+    TestLevels(const RandomProblem<dim> &problem)
+      : DiscreteProblem<dim>(problem.discretization.problem())
+      , Levels<dim>(problem.discretization.dof_handler(),
+                    static_cast<const DiscreteProblem<dim> &>(*this))
+    {}
+  };
 
 
 
@@ -159,7 +172,7 @@ namespace
   // Z^T C Z, column by column.
   template <int dim>
   Eigen::MatrixXd
-  to_dense_operator(CoarseCycle<dim>         &cycle,
+  to_dense_operator(TruncatedCorrection<dim> &cycle,
                     const RandomProblem<dim> &problem,
                     const Eigen::MatrixXd    &Z)
   {
@@ -223,12 +236,9 @@ namespace
         double contraction_of_V = 1.;
         for (const Cycle type : {Cycle::V, Cycle::W})
           {
-            CoarseCycle<dim> cycle(problem.matrix(),
-                                   problem.hierarchy(),
-                                   problem.constraints(),
-                                   type,
-                                   1);
-            cycle.update(truncation);
+            TestLevels<dim>          levels(problem);
+            TruncatedCorrection<dim> cycle(levels, type, 1);
+            levels.update(truncation);
             const Eigen::MatrixXd C =
               to_dense_operator(cycle, problem, setup.Z);
             const std::string which = std::string(name(type)) + "-cycle: ";
@@ -287,12 +297,9 @@ namespace
     const Truncation<dim> truncation =
       make_truncation<dim>(problem, "random at contact", random);
     const Setup<dim> setup(problem, truncation);
-    CoarseCycle<dim> cycle(problem.matrix(),
-                           problem.hierarchy(),
-                           problem.constraints(),
-                           Cycle::V,
-                           1);
-    cycle.update(truncation);
+    TestLevels<dim>          levels(problem);
+            TruncatedCorrection<dim> cycle(levels, Cycle::V, 1);
+            levels.update(truncation);
     const Eigen::MatrixXd C = to_dense_operator(cycle, problem, setup.Z);
     const Eigen::MatrixXd factor =
       Eigen::LLT<Eigen::MatrixXd>(setup.reduced).matrixL();
@@ -338,12 +345,9 @@ namespace
     Truncation<dim> truncation(problem.constraints());
     for (unsigned int i = 0; i < problem.constraints().n_nodes(); ++i)
       truncation.set(i, zero_block<dim>(), zero_block<dim>());
-    CoarseCycle<dim> cycle(problem.matrix(),
-                           problem.hierarchy(),
-                           problem.constraints(),
-                           Cycle::V,
-                           1);
-    cycle.update(truncation);
+    TestLevels<dim>          levels(problem);
+            TruncatedCorrection<dim> cycle(levels, Cycle::V, 1);
+            levels.update(truncation);
     VectorType r = problem.leaf_vector(), v(r);
     v            = 17.;
     cycle.apply(v, r);
@@ -378,9 +382,10 @@ namespace
 
         for (const Cycle type : {Cycle::V, Cycle::W})
           {
-            CoarseCycle<dim> cycle(
-              problem.matrix(), problem.hierarchy(), constraints, type, 2);
-            cycle.update(truncation);
+            TestLevels<dim>          levels(problem);
+            TruncatedCorrection<dim> unbounded(levels, type, 2);
+            MonotoneCorrection<dim>  cycle(levels, type, 2);
+            levels.update(truncation);
             const std::string which = std::string(name(type)) + "-cycle: ";
 
             double       excess = 0, largest_energy = -infinity, deviation = 0;
@@ -399,8 +404,9 @@ namespace
                 VectorType lower = r, upper = r, v = r, free = r;
                 lower = -infinity;
                 upper = infinity;
-                cycle.apply(free, r);
-                cycle.apply_within_bounds(v, r, lower, upper);
+                unbounded.apply(free, r);
+                cycle.set_bounds(lower, upper);
+                cycle.apply(v, r);
                 free -= v;
                 deviation =
                   std::max(deviation, free.linfty_norm() / v.linfty_norm());
@@ -432,7 +438,8 @@ namespace
                           }
                     }
                 v = 17.;
-                cycle.apply_within_bounds(v, r, lower, upper);
+                cycle.set_bounds(lower, upper);
+                cycle.apply(v, r);
                 for (unsigned int i = 0; i < constraints.n_nodes(); ++i)
                   {
                     double square = 0, allowed = 0;

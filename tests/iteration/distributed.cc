@@ -2,11 +2,9 @@
 // whole problem on its own, on the same mesh, with hanging nodes on the contact
 // boundary, and the two are compared vertex by vertex:
 //
-// - contact nodes with normals, gaps and measures, and the rows of the
-// stiffness
+// - contact nodes with normals, gaps and measures, and the rows of the stiffness
 //   matrix;
-// - the matrices of all levels, with random projectors and second derivatives
-// at
+// - the matrices of all levels, with random projectors and second derivatives at
 //   contact nodes, after a fresh assembly and after updates; updates must agree
 //   with fresh assemblies to the last bit on several processes, too;
 // - the solution, with the same phases, certificate and energy.
@@ -17,18 +15,19 @@
 // raise the energy for given normal forces, neither that of several processes
 // nor that evaluated by one alone.
 
-#include <common/iteration/coarse_cycle.h>
+#include <common/algorithms/contact_solver.h>
+#include <common/iteration/truncated_correction.h>
 #include <common/nodes/interface_damping.h>
 #include <common/levels/level_matrices.h>
 #include <common/iteration/monotone_smoother.h>
 #include <common/parallel/phase_costs.h>
 #include <common/parallel/reductions.h>
-#include <common/algorithms/coulomb_solver.h>
 
 #include <iostream>
 #include <map>
 
 #include <tests/support/check.h>
+#include <tests/support/discretized.h>
 #include <tests/support/random_problem.h>
 
 using namespace Tests;
@@ -87,7 +86,11 @@ namespace
               }
           mesh->execute_coarsening_and_refinement();
         }
-      discretization = std::make_unique<Discretized<dim>>(scene, *mesh);
+      discretization  = std::make_unique<Discretized<dim>>(scene, *mesh);
+      level_hierarchy = std::make_unique<LevelHierarchy<dim>>(
+        discretization->dof_handler(),
+        discretization->constraints(),
+        discretization->stiffness().blocks());
 
       // Where nodes are: on the leaf mesh those that are known, on the levels
       // all there are.
@@ -160,9 +163,16 @@ namespace
       return result;
     }
 
+    const LevelHierarchy<dim> &
+    hierarchy() const
+    {
+      return *level_hierarchy;
+    }
+
     const Scene<dim>                                           scene;
     std::unique_ptr<parallel::distributed::Triangulation<dim>> mesh;
     std::unique_ptr<Discretization<dim>>                       discretization;
+    std::unique_ptr<LevelHierarchy<dim>>                       level_hierarchy;
     std::vector<Point<dim>>                                    points;
     std::map<Key<dim>, unsigned int>                           leaf_nodes;
     std::vector<std::vector<Point<dim>>>                       level_points;
@@ -190,11 +200,11 @@ namespace
 
     const double n_contact =
       sum_over_processes(d.contact().size(), MPI_COMM_WORLD);
-    report(std::abs(n_contact - e.contact->size()),
+    report(std::abs(n_contact - e.contact().size()),
            0.,
            "the contact nodes are those of one process");
     std::map<Key<dim>, const ContactNode<dim> *> nodes;
-    for (const ContactNode<dim> &p : *e.contact)
+    for (const ContactNode<dim> &p : e.contact())
       nodes[key_of(p.point)] = &p;
     double difference = 0;
     for (const ContactNode<dim> &p : d.contact())
@@ -221,7 +231,7 @@ namespace
         const unsigned int row = alone.leaf_nodes.at(key_of(all.points[i]));
         missing += std::abs(
           static_cast<double>(d.stiffness().blocks().row_end(i) - d.stiffness().blocks().row_begin(i)) -
-          (e.matrix.row_end(row) - e.matrix.row_begin(row)));
+          (e.stiffness().blocks().row_end(row) - e.stiffness().blocks().row_begin(row)));
         for (std::size_t k = d.stiffness().blocks().row_begin(i); k < d.stiffness().blocks().row_end(i);
              ++k)
           {
@@ -230,14 +240,14 @@ namespace
             for (unsigned int c = 0; c < dim; ++c)
               point[c] = where.local_element(dim * j + c);
             const std::size_t l =
-              e.matrix.find(row, alone.leaf_nodes.at(key_of(point)));
-            if (l == e.matrix.row_end(row))
+              e.stiffness().blocks().find(row, alone.leaf_nodes.at(key_of(point)));
+            if (l == e.stiffness().blocks().row_end(row))
               ++missing;
             else
               for (unsigned int b = 0; b < dim * dim; ++b)
                 difference = std::max(
                   difference,
-                  std::abs(d.stiffness().blocks().block(k)[b] - e.matrix.block(l)[b]));
+                  std::abs(d.stiffness().blocks().block(k)[b] - e.stiffness().blocks().block(l)[b]));
           }
       }
     report(missing, 0., "rows of the stiffness matrix have the same pattern");
@@ -257,7 +267,7 @@ namespace
     for (unsigned int k = 0; k < all_matrices.n_levels(); ++k)
       {
         const auto &numbering =
-          all.discretization.hierarchy->level(k).numbering();
+          all.hierarchy().level(k).numbering();
         const auto &A = all_matrices.matrix(k), &B = alone_matrices.matrix(k);
         double      scale = 0;
         for (unsigned int i = 0; i < B.n_rows(); ++i)
@@ -297,8 +307,8 @@ namespace
                          const unsigned int  seed)
   {
     const auto        &d = *all.discretization, &e = *alone.discretization;
-    LevelMatrices<dim> matrices(d.stiffness().blocks(), *d.hierarchy, d.constraints()),
-      alone_matrices(e.matrix, *e.hierarchy, *e.constraints);
+    LevelMatrices<dim> matrices(d.stiffness().blocks(), all.hierarchy(), d.constraints()),
+      alone_matrices(e.stiffness().blocks(), alone.hierarchy(), e.constraints());
     report(largest_difference(matrices, all, alone_matrices, alone),
            1e-13,
            "level matrices are those of one process");
@@ -314,7 +324,7 @@ namespace
         difference = std::max(
           difference, largest_difference(matrices, all, alone_matrices, alone));
 
-        LevelMatrices<dim> fresh(d.stiffness().blocks(), *d.hierarchy, d.constraints());
+        LevelMatrices<dim> fresh(d.stiffness().blocks(), all.hierarchy(), d.constraints());
         fresh.update(truncation);
         for (unsigned int k = 0; k < matrices.n_levels(); ++k)
           for (std::size_t p = 0; p < matrices.matrix(k).n_blocks(); ++p)
@@ -334,9 +344,10 @@ namespace
   check_cycle(const Problem<dim> &all, const unsigned int seed)
   {
     const auto      &d = *all.discretization;
-    CoarseCycle<dim> cycle(d.stiffness().blocks(), *d.hierarchy, d.constraints(), Cycle::V, 2);
-    const Truncation<dim> truncation = all.truncation(seed, 1.);
-    cycle.update(truncation);
+    Levels<dim>              levels(d.dof_handler(), d.problem());
+    TruncatedCorrection<dim> cycle(levels, Cycle::V, 2);
+    const Truncation<dim>    truncation = all.truncation(seed, 1.);
+    levels.update(truncation);
 
     const auto random_residual = [&](const unsigned int salt) {
       VectorType r(d.constraints().partitioner());
@@ -373,8 +384,7 @@ namespace
     const auto &d = *all.discretization, &e = *alone.discretization;
     const TrescaFunctional<dim> functional(d.problem()),
       alone_functional(e.problem());
-    MonotoneSmoother<dim> smoother(
-      d.stiffness().blocks(), d.constraints(), d.contact(), d.friction_coefficient);
+    MonotoneSmoother<dim> smoother(d.problem());
 
     VectorType u = admissible_start(d);
     for (unsigned int i = 0; i < d.constraints().n_owned_nodes(); ++i)
@@ -386,22 +396,22 @@ namespace
             u.local_element(dim * i + c) = random(-.01, .01);
       }
     ContactState state(d.contact().size(), true),
-      alone_state(e.contact->size(), true);
+      alone_state(e.contact().size(), true);
     const auto bound_at = [&](const ContactNode<dim> &p) {
       Random random = random_at(p.point, seed + 1);
       return random.chance(.2) ? 0. : random(0., .01);
     };
     for (unsigned int p = 0; p < d.contact().size(); ++p)
       {
-        const ContactNode<dim> &node   = (d.contact())[p];
+        const ContactNode<dim> &node   = d.contact()[p];
         const double            excess = normal_component(node, u) - node.gap;
         if (excess > 0)
           for (unsigned int c = 0; c < dim; ++c)
             u.local_element(dim * node.node + c) -= excess * node.normal()[c];
         state.set_normal_force(p, bound_at(node));
       }
-    for (unsigned int p = 0; p < e.contact->size(); ++p)
-      alone_state.set_normal_force(p, bound_at((*e.contact)[p]));
+    for (unsigned int p = 0; p < e.contact().size(); ++p)
+      alone_state.set_normal_force(p, bound_at(e.contact()[p]));
 
     // The displacement as one process knows it.
     const auto gathered = [&]() {
@@ -413,7 +423,7 @@ namespace
           for (unsigned int c = 0; c < dim; ++c)
             here.push_back(u.local_element(dim * i + c));
         }
-      VectorType result(e.constraints->partitioner());
+      VectorType result(e.constraints().partitioner());
       for (const auto &list : Utilities::MPI::all_gather(MPI_COMM_WORLD, here))
         for (std::size_t k = 0; k < list.size(); k += 2 * dim)
           {
@@ -441,12 +451,11 @@ namespace
              0.,
              "there are nodes that are damped, if there are many processes");
 
-    smoother.ghosts().update(u.begin(), dim);
     double energy = functional.energy(u, state), rise = 0, disagreement = 0,
            penetration = functional.largest_penetration(u), fall = 0;
     for (unsigned int step = 0; step < 20; ++step)
       {
-        smoother.sweep(u, d.loads(), state, false, step % 2 == 1);
+        sweep(smoother, u, state, false, step % 2 == 1);
         const double next = functional.energy(u, state);
         disagreement      = std::max(
           disagreement,
@@ -467,23 +476,23 @@ namespace
     // exchange each, and so as many messages as there are in an exchange.
     VectorType   v(u);
     ContactState w(state);
-    const auto   n_messages = []() {
+    const auto   n_messages = [&]() {
       std::size_t sum = 0;
-      for (const PhaseCost &cost : phase_costs())
+      for (const PhaseCost &cost :
+           phase_costs(d.constraints().communicator()))
         sum += cost.messages;
       return sum;
     };
     const std::size_t before = n_messages();
-    smoother.ghosts().update(v.begin(), dim);
+    d.stiffness().update_ghosts(v);
     const std::size_t in_an_exchange = n_messages() - before;
-    typename MonotoneSmoother<dim>::Sweeps what;
-    what.n = 3;
-    smoother.sweeps(v, d.loads(), w, what);
-    report(n_messages() - before == 4 * in_an_exchange ? 0. : 1.,
+    Iterate           x(v, w);
+    smoother.forward(x, 3);
+    report(n_messages() - before == 5 * in_an_exchange ? 0. : 1.,
            0.,
-           "there is one exchange of ghosts per sweep");
+           "there is one exchange of ghosts per sweep, and one before them");
     for (unsigned int step = 0; step < 3; ++step)
-      smoother.sweep(u, d.loads(), state, false, false);
+      sweep(smoother, u, state, false, false);
     double difference = 0;
     for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
       difference =
@@ -499,23 +508,20 @@ namespace
   check_monotonicity(const Problem<dim> &all, const unsigned int seed)
   {
     const auto                &d       = *all.discretization;
-    const DiscreteProblem<dim> problem = {d.stiffness().blocks(),
-                                          d.loads(),
-                                          d.constraints(),
-                                          d.contact(),
-                                          FrictionLaw::tresca,
-                                          d.friction_coefficient};
+    DiscreteProblem<dim>       problem = d.problem();
+    problem.friction_law               = FrictionLaw::tresca;
     for (const auto correction :
          {CoarseCorrection::truncated, CoarseCorrection::monotone})
       {
         SolverSettings settings;
         settings.coarse_correction = correction;
-        CoulombSolver<dim> solver(*d.hierarchy, problem, settings);
+        ContactSolver<dim> solver(
+          d.dof_handler(), problem, without_safeguards(settings));
         VectorType         u = admissible_start(d);
         ContactState       state(d.contact().size(), true);
         for (unsigned int p = 0; p < d.contact().size(); ++p)
           {
-            Random random = random_at((d.contact())[p].point, seed + 1);
+            Random random = random_at(d.contact()[p].point, seed + 1);
             state.set_normal_force(p, random(0., .01));
           }
         const SolverReport result = solver.solve(u, state);
@@ -547,12 +553,12 @@ namespace
           settings.cycle = Cycle::W;
         const auto solve = [&](const Discretization<dim> &disc,
                                ContactState              &state) {
-          CoulombSolver<dim> solver(*disc.hierarchy, disc.problem(), settings);
+          ContactSolver<dim> solver(disc, without_safeguards(settings));
           VectorType         u = admissible_start(disc);
           return solver.solve(u, state);
         };
         ContactState state(d.contact().size(), true),
-          alone_state(e.contact->size(), true);
+          alone_state(e.contact().size(), true);
         const SolverReport found    = solve(d, state);
         const SolverReport expected = solve(e, alone_state);
         const std::string  name     = correction == CoarseCorrection::truncated
@@ -566,12 +572,12 @@ namespace
                1e-10,
                name + "the energy is that of one process");
         std::map<Key<dim>, unsigned int> number;
-        for (unsigned int p = 0; p < e.contact->size(); ++p)
-          number[key_of((*e.contact)[p].point)] = p;
+        for (unsigned int p = 0; p < e.contact().size(); ++p)
+          number[key_of(e.contact()[p].point)] = p;
         double n_different = 0;
         for (unsigned int p = 0; p < d.contact().size(); ++p)
           {
-            const unsigned int q = number.at(key_of((d.contact())[p].point));
+            const unsigned int q = number.at(key_of(d.contact()[p].point));
             n_different += state.in_contact(p) != alone_state.in_contact(q) ||
               (state.in_contact(p) && state.sticks(p) != alone_state.sticks(q));
           }
@@ -596,11 +602,11 @@ namespace
       {
         unsigned int n_hanging = 0;
         const auto  &e         = *alone.discretization;
-        for (unsigned int i = 0; i < e.constraints->n_nodes(); ++i)
-          n_hanging += e.constraints->is_hanging(i);
-        std::cout << dim << "D, " << e.hierarchy->n_levels() << " levels, "
-                  << e.constraints->n_nodes() << " nodes, " << n_hanging
-                  << " hang, " << e.contact->size() << " may touch"
+        for (unsigned int i = 0; i < e.constraints().n_nodes(); ++i)
+          n_hanging += e.constraints().is_hanging(i);
+        std::cout << dim << "D, " << alone.hierarchy().n_levels() << " levels, "
+                  << e.constraints().n_nodes() << " nodes, " << n_hanging
+                  << " hang, " << e.contact().size() << " may touch"
                   << std::endl;
       }
     compare_discretizations(all, alone);

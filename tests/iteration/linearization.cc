@@ -48,7 +48,7 @@ namespace
     n_phases
   };
 
-  struct Iterate
+  struct Sample
   {
     VectorType         u;
     ContactState       state;
@@ -90,11 +90,11 @@ namespace
   // A node slides along a prescribed tangent whatever friction does; it cannot
   // be held.
   template <int dim>
-  Iterate
-  make_iterate(const RandomProblem<dim> &problem, Random &random)
+  Sample
+  make_sample(const RandomProblem<dim> &problem, Random &random)
   {
     const auto &contact = problem.contact();
-    Iterate it{problem.leaf_vector(), ContactState(contact.size(), true), {}};
+    Sample it{problem.leaf_vector(), ContactState(contact.size(), true), {}};
     for (auto &value : it.u)
       value = random(-.1, .1);
     problem.constraints().impose(it.u);
@@ -186,11 +186,27 @@ namespace
                       const VectorType         &u,
                       const ContactState       &state)
   {
-    VectorType r = problem.leaf_vector();
-    problem.matrix().residual(
-      r.begin(), problem.discretization.loads().begin(), u.begin());
-    linearization.linearize_residual(r, u, state);
+    VectorType   v(u), r(u);
+    ContactState present(state);
+    Iterate      x(v, present);
+    x.residual.reinit(u);
+    problem.discretization.stiffness().residual(
+      x.residual, problem.discretization.loads(), u);
+    linearization.linearize_residual(r, x);
     return r;
+  }
+
+
+
+  template <int dim>
+  void
+  update(Linearization<dim> &linearization,
+         const VectorType   &u,
+         const ContactState &state)
+  {
+    VectorType   v(u);
+    ContactState present(state);
+    linearization.update(Iterate(v, present));
   }
 
 
@@ -239,7 +255,7 @@ namespace
   add_remainders(Remainders               &sums,
                  const RandomProblem<dim> &problem,
                  const Linearization<dim> &linearization,
-                 const Iterate            &it,
+                 const Sample            &it,
                  Random                   &random)
   {
     const TrescaFunctional<dim> functional(problem.discretization.problem());
@@ -284,8 +300,8 @@ namespace
   test_derivatives(const RandomProblem<dim> &problem, Random &random)
   {
     const auto       &contact     = problem.contact();
-    const auto       &constraints = problem.constraints();
     const std::string F           = "omega'': ";
+    const DiscreteProblem<dim> discrete = problem.friction_problem(friction);
 
     std::vector<unsigned int> n_of_phase(n_phases, 0);
     double       projectors = 0, held = 0, truncated = 0, formula = 0;
@@ -295,11 +311,10 @@ namespace
     Remainders   with, without;
     for (unsigned int sample = 0; sample < 30; ++sample)
       {
-        const Iterate it   = make_iterate<dim>(problem, random);
+        const Sample it   = make_sample<dim>(problem, random);
         const auto    make = [&](const TruncationVariant variant) {
-          Linearization<dim> result(
-            problem.matrix(), constraints, contact, friction, variant);
-          result.update(it.u, it.state);
+          Linearization<dim> result(discrete, variant);
+          update(result, it.u, it.state);
           return result;
         };
         const Linearization<dim>
@@ -432,20 +447,21 @@ namespace
     const auto                 &contact     = problem.contact();
     const auto                 &constraints = problem.constraints();
     const TrescaFunctional<dim> functional(problem.discretization.problem());
-    Linearization<dim>          linearization(problem.matrix(),
-                                     constraints,
-                                     contact,
-                                     friction,
-                                     TruncationVariant::phases);
+    const DiscreteProblem<dim>  discrete = problem.friction_problem(friction);
+    Linearization<dim> linearization(discrete, TruncationVariant::phases);
     double       prescribed = 0, penetration = -infinity, reversed = 0;
     bool         zero_inside = true, still = true;
     unsigned int n_at_bound = 0, n_stopped = 0;
     for (unsigned int sample = 0; sample < 30; ++sample)
       {
-        const Iterate it = make_iterate<dim>(problem, random);
-        linearization.update(it.u, it.state);
+        const Sample it = make_sample<dim>(problem, random);
+        update(linearization, it.u, it.state);
         VectorType lower(it.u), upper(it.u);
-        linearization.bounds(lower, upper, it.u, it.state);
+        {
+          VectorType   u(it.u);
+          ContactState state(it.state);
+          linearization.bounds(lower, upper, Iterate(u, state));
+        }
         for (unsigned int i = 0; i < lower.locally_owned_size(); ++i)
           zero_inside = zero_inside && lower.local_element(i) <= 0. &&
             upper.local_element(i) >= 0.;
@@ -511,7 +527,7 @@ namespace
   test_refresh(const RandomProblem<3> &problem, Random &random)
   {
     const auto   &contact = problem.contact();
-    const Iterate it      = make_iterate<3>(problem, random);
+    const Sample it      = make_sample<3>(problem, random);
     unsigned int  p       = 0;
     while (it.phases[p] != slip || contact[p].n_free_tangents < 2)
       ++p;
@@ -529,20 +545,17 @@ namespace
     const Tensor<1, 3> start = bound / (1e6 * stiffness) * direction;
 
     // The curvature for a slip at that node, by an object that may remember.
-    VectorType   u(it.u);
-    ContactState state(it.state);
-    const auto   make = [&]() {
-      return Linearization<3>(problem.matrix(),
-                              problem.constraints(),
-                              contact,
-                              friction,
-                              TruncationVariant::phases);
+    const DiscreteProblem<3> discrete = problem.friction_problem(friction);
+    VectorType               u(it.u);
+    ContactState             state(it.state);
+    const auto               make = [&]() {
+      return Linearization<3>(discrete, TruncationVariant::phases);
     };
     const auto curvature = [&](Linearization<3>   &linearization,
                                const Tensor<1, 3> &slip) {
       u = it.u;
       shift<3>(u, node, slip - original);
-      linearization.update(u, state);
+      update(linearization, u, state);
       return to_matrix<3>(linearization.truncation().curvature(node.node));
     };
     const auto fresh = [&](const Tensor<1, 3> &slip) {
@@ -625,7 +638,7 @@ namespace
         for (unsigned int d = 0; d < 3; ++d)
           u.local_element(3 * node.node + d) = size * across[d];
         Linearization<3> l = make();
-        l.update(u, state);
+        update(l, u, state);
         const double omega =
           to_matrix<3>(l.truncation().curvature(node.node)).norm();
         const double expected = size == 0.

@@ -26,6 +26,7 @@
 #include <limits>
 
 #include <tests/support/check.h>
+#include <tests/support/discretized.h>
 #include <tests/support/random_problem.h>
 
 using namespace Tests;
@@ -84,8 +85,9 @@ namespace
                     const double              friction,
                     Random                   &random)
   {
-    const auto                 &disc = *problem.discretization;
-    const TrescaFunctional<dim> functional(disc.problem());
+    const auto                 &d = problem.discretization;
+    const DiscreteProblem<dim>  disc = problem.friction_problem(friction);
+    const TrescaFunctional<dim> functional(disc);
     VectorType                  u = random_start<dim>(problem, random);
     ContactState state = random_state<dim>(problem, friction, random);
 
@@ -100,13 +102,17 @@ namespace
           if (j != i && !held.is_hanging(j))
             for (unsigned int d = 0; d < dim; ++d)
               held.prescribe(j, d, u.local_element(dim * j + d));
-        const ContactBoundary<dim> contact(disc.mapping(),
-                                           disc.dof_handler(),
-                                           disc.hanging_nodes(),
+        const ContactBoundary<dim> contact(d.mapping(),
+                                           d.dof_handler(),
+                                           d.hanging_nodes(),
                                            held,
-                                           problem.scene.contact_boundary_id(),
-                                           problem.scene.obstacle(),
-                                           problem.scene.contact_normal());
+                                           problem.scene);
+        const DiscreteProblem<dim> of_node = {disc.stiffness,
+                                              disc.forces,
+                                              held,
+                                              contact,
+                                              disc.friction_law,
+                                              disc.friction_coefficient};
         AssertThrow(contact.size() <= 1, ExcInternalError());
         ContactState single(contact.size(), friction > 0);
         unsigned int number = 0;
@@ -116,11 +122,10 @@ namespace
               ++number;
             single.set_normal_force(0, state.normal_force(number));
           }
-        const MonotoneSmoother<dim> smoother(
-          problem.matrix(), held, contact, friction);
+        const MonotoneSmoother<dim> smoother(of_node);
         const VectorType before = u;
         const double     energy = functional.energy(u, state);
-        smoother.sweep(u, disc.loads(), single, false, random.chance(.5));
+        sweep(smoother, u, single, false, random.chance(.5));
         const double now = functional.energy(u, state);
         increase         = std::max(increase, now - energy);
         n_lowered += now < energy - 1e-8;
@@ -158,10 +163,9 @@ namespace
               const double              friction,
               Random                   &random)
   {
-    const auto                 &disc = *problem.discretization;
-    const TrescaFunctional<dim> functional(disc.problem());
-    const MonotoneSmoother<dim> smoother(
-      problem.matrix(), problem.constraints(), problem.contact(), friction);
+    const DiscreteProblem<dim>  disc = problem.friction_problem(friction);
+    const TrescaFunctional<dim> functional(disc);
+    const MonotoneSmoother<dim> smoother(disc);
     double       increase = 0, penetration = -infinity, prescribed = 0;
     double       residuals     = 0;
     bool         flags_right   = true;
@@ -171,9 +175,9 @@ namespace
         VectorType   u     = random_start<dim>(problem, random);
         ContactState state = random_state<dim>(problem, friction, random);
         double       last  = functional.energy(u, state);
-        for (unsigned int sweep = 0; sweep < 20; ++sweep)
+        for (unsigned int n = 0; n < 20; ++n)
           {
-            smoother.sweep(u, disc.loads(), state, false, random.chance(.5));
+            sweep(smoother, u, state, false, random.chance(.5));
             const double energy = functional.energy(u, state);
             increase            = std::max(increase, energy - last);
             last                = energy;
@@ -204,17 +208,21 @@ namespace
           }
 
         // Several sweeps at once are as many single ones.
-        VectorType                             v(u), r(u), expected(u);
-        ContactState                           other = state;
-        typename MonotoneSmoother<dim>::Sweeps three;
-        three.n         = 3;
-        three.backwards = start % 2;
-        smoother.sweeps(v, disc.loads(), other, three, &r);
-        for (unsigned int sweep = 0; sweep < 3; ++sweep)
-          smoother.sweep(u, disc.loads(), state, false, three.backwards);
-        problem.matrix().residual(
-          expected.begin(), disc.loads().begin(), u.begin());
-        expected -= r;
+        VectorType   v(u), expected(u);
+        ContactState other     = state;
+        const bool   backwards = start % 2;
+        Iterate      x(v, other);
+        if (backwards)
+          smoother.backward(x, 3);
+        else
+          smoother.forward(x, 3);
+        for (unsigned int n = 0; n < 3; ++n)
+          sweep(smoother, u, state, false, backwards);
+        disc.stiffness.residual(expected, disc.forces, u);
+        if (backwards)
+          expected = 0.;
+        else
+          expected -= x.residual;
         u -= v;
         residuals =
           std::max({residuals, u.linfty_norm(), expected.linfty_norm()});
@@ -248,15 +256,10 @@ namespace
                      const double              friction,
                      Random                   &random)
   {
-    const auto                 &disc        = *problem.discretization;
+    const DiscreteProblem<dim>  disc = problem.friction_problem(friction);
     const auto                 &constraints = problem.constraints();
-    const MonotoneSmoother<dim> smoother(
-      problem.matrix(), constraints, problem.contact(), friction);
-    const MonotoneSmoother<dim> uzawa(problem.matrix(),
-                                      constraints,
-                                      problem.contact(),
-                                      friction,
-                                      LocalSolver::uzawa);
+    const MonotoneSmoother<dim> smoother(disc);
+    const MonotoneSmoother<dim> uzawa(disc, LocalSolver::uzawa);
     double                      difference = 0, disagreement = 0;
     bool                        untouched = true, same_states = true;
     unsigned int                n_hanging[2] = {0, 0};
@@ -270,13 +273,13 @@ namespace
         const VectorType written(v);
         ContactState     state = random_state<dim>(problem, friction, random);
         ContactState     state_v(state), state_w(state);
-        for (unsigned int sweep = 0; sweep < 6; ++sweep)
+        for (unsigned int n = 0; n < 6; ++n)
           {
-            const bool coulomb   = start == 2 && sweep > 2;
-            const bool backwards = sweep % 2;
-            smoother.sweep(u, disc.loads(), state, coulomb, backwards);
-            smoother.sweep(v, disc.loads(), state_v, coulomb, backwards);
-            uzawa.sweep(w, disc.loads(), state_w, coulomb, backwards);
+            const bool coulomb   = start == 2 && n > 2;
+            const bool backwards = n % 2;
+            sweep(smoother, u, state, coulomb, backwards);
+            sweep(smoother, v, state_v, coulomb, backwards);
+            sweep(uzawa, w, state_w, coulomb, backwards);
             disagreement = std::max(
               disagreement, largest_difference<dim>(u, w) / u.linfty_norm());
             for (unsigned int p = 0; p < state.size(); ++p)
@@ -326,13 +329,12 @@ namespace
     for (auto &center : parameters.obstacle.centers)
       center.back() -= 10.;
     const RandomProblem<dim>    problem(parameters, 2, .5, random);
-    const auto                 &disc = *problem.discretization;
-    const MonotoneSmoother<dim> smoother(
-      problem.matrix(), problem.constraints(), problem.contact(), 0.);
+    const DiscreteProblem<dim>  disc = problem.friction_problem(0.);
+    const MonotoneSmoother<dim> smoother(disc);
     ContactState state(problem.contact().size(), false);
     const auto   product = [&](const VectorType &a, const VectorType &b) {
       VectorType Ab(b);
-      problem.matrix().vmult(Ab.begin(), b.begin());
+      disc.stiffness.vmult(Ab, b);
       return a * Ab;
     };
     const auto difference = [&]() {
@@ -344,8 +346,8 @@ namespace
     const auto       linear = [&](const VectorType &x, const bool backwards) {
       VectorType u(base), v(base);
       u += x;
-      smoother.sweep(u, disc.loads(), state, false, backwards);
-      smoother.sweep(v, disc.loads(), state, false, backwards);
+      sweep(smoother, u, state, false, backwards);
+      sweep(smoother, v, state, false, backwards);
       u -= v;
       return u;
     };
@@ -377,21 +379,20 @@ namespace
                    const bool                coulomb,
                    Random                   &random)
   {
-    const auto                 &disc = *problem.discretization;
-    const MonotoneSmoother<dim> smoother(
-      problem.matrix(), problem.constraints(), problem.contact(), friction);
+    const DiscreteProblem<dim>  disc = problem.friction_problem(
+      friction, coulomb ? FrictionLaw::coulomb : FrictionLaw::tresca);
+    const MonotoneSmoother<dim> smoother(disc);
     VectorType   u     = random_start<dim>(problem, random);
     ContactState state = random_state<dim>(problem, friction, random);
-    for (unsigned int sweep = 0; sweep < 2500; ++sweep)
-      smoother.sweep(u, disc.loads(), state, coulomb, sweep % 2);
+    for (unsigned int n = 0; n < 2500; ++n)
+      sweep(smoother, u, state, coulomb, n % 2);
 
     VectorType   v(u), r(u);
     ContactState after = state;
-    smoother.sweep(v, disc.loads(), after, coulomb, false);
-    smoother.sweep(v, disc.loads(), after, coulomb, true);
-    problem.matrix().residual(r.begin(), disc.loads().begin(), u.begin());
-    const Certificate certificate = make_certificate<dim>(
-      u, r, problem.constraints(), problem.contact(), state, friction, coulomb);
+    sweep(smoother, v, after, coulomb, false);
+    sweep(smoother, v, after, coulomb, true);
+    disc.stiffness.residual(r, disc.forces, u);
+    const Certificate certificate = make_certificate(disc, u, r, state);
     v -= u;
 
     // Sliding nodes once more: in 3D a part of the slip may be prescribed.

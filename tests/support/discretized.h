@@ -2,6 +2,7 @@
 #define friction_tests_support_discretized_h
 
 #include <common/discretization/discretization.h>
+#include <common/iteration/monotone_smoother.h>
 
 #include <vector>
 
@@ -55,6 +56,24 @@ namespace Tests
         points[d.constraints().node_of_dof(cell->vertex_dof_index(v, 0))] =
           cell->vertex(v);
     return points;
+  }
+
+
+
+  /** A single sweep of the leading relaxation. */
+  template <int dim>
+  void
+  sweep(const MonotoneSmoother<dim> &smoother,
+        VectorType                  &u,
+        ContactState                &state,
+        const bool                   updates_normal_forces,
+        const bool                   backwards)
+  {
+    Iterate x(u, state, updates_normal_forces);
+    if (backwards)
+      smoother.backward(x, 1);
+    else
+      smoother.forward(x, 1);
   }
 
 

@@ -205,6 +205,17 @@ namespace Tests
       return discretization.stiffness().blocks();
     }
 
+    /** The discrete problem with another coefficient of friction. */
+    DiscreteProblem<dim>
+    friction_problem(const double      coefficient,
+                     const FrictionLaw law = FrictionLaw::tresca) const
+    {
+      DiscreteProblem<dim> result = discretization.problem();
+      result.friction_law         = law;
+      result.friction_coefficient = coefficient;
+      return result;
+    }
+
     VectorType
     leaf_vector() const
     {

@@ -1,3 +1,4 @@
+#include <common/algorithms/nested_iteration.h>
 #include <common/algorithms/safeguarded_solver.h>
 
 #include <tests/benchmarks/baselines/contest.h>

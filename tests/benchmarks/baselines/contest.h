@@ -1,6 +1,8 @@
 #ifndef friction_tests_benchmarks_contest_h
 #define friction_tests_benchmarks_contest_h
 
+#include <common/algorithms/nested_iteration.h>
+
 #include <tests/benchmarks/baselines/report.h>
 #include <tests/support/discretized.h>
 
