@@ -88,7 +88,7 @@ namespace StepFriction3d
   void
   ContactProblem<dim>::begin(const Start start)
   {
-    if (start == Start::from_scene)
+    if (start == Start::anew)
       {
         nest.begin();
         return;

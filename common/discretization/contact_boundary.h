@@ -62,6 +62,9 @@ namespace Friction
   class ContactBoundary
   {
   public:
+    /** No nodes. */
+    ContactBoundary() = default;
+
     /**
      * Collective; errors are thrown on all processes.
      * @param hanging  hanging nodes.

@@ -65,7 +65,7 @@ namespace
     NestedIteration<2> iteration(read_parameters(
       SCENES_DIR "/hertz.prm", {"Refinement/Maximum dofs=1500"}));
     iteration.begin();
-    SolverSettings     fixed_point  = iteration.parameters.solver;
+    SolverSettings     fixed_point  = iteration.parameters().solver;
     fixed_point.algorithm           = Algorithm::fixed_point;
     SolverSettings damped           = fixed_point;
     damped.outer_damping            = 0.5;
@@ -101,7 +101,7 @@ namespace
         damped_displacement = std::max(
           damped_displacement,
           largest_difference(u, iteration.displacement()) / u.linfty_norm());
-    } while (iteration.refine());
+    } while (iteration.advance());
     check(converged, "both converge on every level");
     check_below(displacement, 1e-6, "displacements agree to 1e-6");
     check_below(force, 1e-6, "nodal forces agree to 1e-6");
@@ -166,7 +166,7 @@ namespace
       {
         VectorType         u = admissible_start(d);
         ContactState       state(d.contact().size(), true);
-        CoulombSolver<3>   solver(*d.hierarchy, d.problem(), choice.second);
+        ContactSolver<3>   solver(d, without_safeguards(choice.second));
         const SolverReport report = solver.solve(u, state);
         if (solution.size() == 0)
           {
@@ -212,7 +212,7 @@ namespace
     do
       {
         const Discretization<2>   &d       = iteration.discretization();
-        const DiscreteProblem<2>   problem = d.problem();
+        const DiscreteProblem<2>  &problem = d.problem();
         VectorType                 u;
         const ContactState         guess       = iteration.make_guess(u);
         const NodalConstraints<2> &constraints = d.constraints();
@@ -241,11 +241,11 @@ namespace
             warm += iteration.report().cycles.size();
             u                      = admissible_start(d);
             ContactState     state = ContactState(guess.size(), true);
-            CoulombSolver<2> solver(
-              *d.hierarchy, problem, iteration.parameters.solver);
+            ContactSolver<2> solver(
+              d.dof_handler(), problem, without_safeguards(iteration.parameters().solver));
             cold += solver.solve(u, state).cycles.size();
           }
-    } while (iteration.refine());
+    } while (iteration.advance());
     check(admissible, "admissible");
     check(prescribed, "prescribed values to the last bit");
     check(positive, "normal forces not negative");
@@ -263,8 +263,10 @@ namespace
     const auto make = [](const std::vector<std::string> &more) {
       std::vector<std::string> overrides = {"Refinement/Maximum dofs=600"};
       overrides.insert(overrides.end(), more.begin(), more.end());
-      return std::make_unique<NestedIteration<2>>(
+      auto nest = std::make_unique<NestedIteration<2>>(
         read_parameters(SCENES_DIR "/hertz.prm", overrides));
+      nest->begin();
+      return nest;
     };
     const auto none = make({"Contact/Friction law=none"});
     const auto zero = make({"Contact/Friction coefficient=0"});
@@ -279,32 +281,32 @@ namespace
         both->solve();
         for (const auto *other : {zero.get(), both.get()})
           {
-            same = same && other->report.converged &&
-              same_bits(none->displacement(), other->displacement) &&
-              same_bits(none->report().residual, other->report.residual) &&
-              same_states(none->state(), other->state) &&
-              none->report().energy == other->report.energy &&
-              none->report().cycles.size() == other->report.cycles.size();
+            same = same && other->report().converged &&
+              same_bits(none->displacement(), other->displacement()) &&
+              same_bits(none->report().residual, other->report().residual) &&
+              same_states(none->state(), other->state()) &&
+              none->report().energy == other->report().energy &&
+              none->report().cycles.size() == other->report().cycles.size();
             for (unsigned int c = 0; same && c < none->report().cycles.size();
                  ++c)
               same = none->report().cycles[c].energy ==
-                  other->report.cycles[c].energy &&
+                  other->report().cycles[c].energy &&
                 none->report().cycles[c].increment ==
-                  other->report.cycles[c].increment;
+                  other->report().cycles[c].increment;
           }
         for (const auto *one : {none.get(), zero.get(), both.get()})
           {
-            const ContactState &state = one->state;
+            const ContactState &state = one->state();
             nothing_allocated         = nothing_allocated &&
               state.friction_memory() == 0 && !state.has_friction();
             nothing_said = nothing_said && state.n_contact() > 0 &&
-              state.n_sticking() == 0 && one->report.outer_iterations == 1 &&
-              one->report.outer_changes.empty() &&
-              one->report.certificate.cone < 1e-8;
+              state.n_sticking() == 0 && one->report().outer_iterations == 1 &&
+              one->report().outer_changes.empty() &&
+              one->report().certificate.cone < 1e-8;
           }
-        more = none->refine();
-        more = (zero->refine() == more) && more;
-        more = (both->refine() == more) && more;
+        more = none->advance();
+        more = (zero->advance() == more) && more;
+        more = (both->advance() == more) && more;
     } while (more);
     check(same, "law none and F = 0: the same run, bit for bit");
     check(nothing_allocated, "nothing is allocated for friction");
@@ -314,7 +316,7 @@ namespace
     // coefficient of zero there is no friction, and a state that has none stays
     // without. One cycle truncates one component per node in contact, the
     // normal one, and no more.
-    const Discretization<2> &d         = *none->discretization();
+    const Discretization<2> &d         = none->discretization();
     bool                     same_work = true, normal_only = true;
     VectorType               first;
     std::size_t              rows = 0, memory = 0;
@@ -326,22 +328,23 @@ namespace
         problem.friction_coefficient = law == FrictionLaw::none ? 0.4 : 0.;
         VectorType           u       = admissible_start(d);
         ContactState         state(d.contact().size(), problem.has_friction());
-        MonotoneMultigrid<2> multigrid(
-          *d.hierarchy, problem, none->parameters.solver);
-        const MultigridResult result = multigrid.solve(u, state, true);
-        multigrid.update_normal_forces(state, u);
+        ContactSolver<2>   solver(d.dof_handler(),
+                                problem,
+                                without_safeguards(none->parameters().solver));
+        const SolverReport result = solver.solve(u, state);
+        set_normal_forces(problem.contact, result.residual, state);
         normal_only = normal_only && result.converged &&
           !problem.has_friction() && state.friction_memory() == 0 &&
           result.cycles.back().truncated == state.n_contact();
         if (law == FrictionLaw::none)
           {
             first  = u;
-            rows   = multigrid.cost().n_updated_rows;
-            memory = multigrid.memory_consumption();
+            rows   = solver.iteration().n_updated_rows();
+            memory = result.solver_memory;
           }
         same_work = same_work && same_bits(u, first) &&
-          rows == multigrid.cost().n_updated_rows &&
-          memory == multigrid.memory_consumption();
+          rows == solver.iteration().n_updated_rows() &&
+          memory == result.solver_memory;
       }
     check(normal_only, "truncated components: the normal ones, nothing else");
     check(same_work, "the same work and memory for all laws");

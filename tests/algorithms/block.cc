@@ -63,7 +63,7 @@ namespace
            {CoarseCorrection::truncated, CoarseCorrection::monotone})
         for (const Cycle cycle : {Cycle::V, Cycle::W})
           {
-            SolverSettings settings    = iteration.parameters.solver;
+            SolverSettings settings    = iteration.parameters().solver;
             settings.algorithm         = algorithm;
             settings.coarse_correction = correction;
             settings.cycle             = cycle;

@@ -116,7 +116,7 @@ namespace
     solve(const Variant &variant)
     {
       const Discretization<3> &d        = iteration.discretization();
-      SolverSettings           settings = iteration.parameters.solver;
+      SolverSettings           settings = iteration.parameters().solver;
       settings.algorithm                = variant.algorithm;
       settings.coarse_correction        = variant.correction;
       settings.local_solver             = variant.local_solver;

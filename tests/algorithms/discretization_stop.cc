@@ -35,9 +35,9 @@ namespace
       (dim == 2 ? SCENES_DIR "/" : SCENES_3D_DIR "/") + scene + ".prm",
       overrides));
     nest.begin();
-    SolverSettings       tight    = nest.parameters.solver;
+    SolverSettings       tight    = nest.parameters().solver;
     tight.inner_tolerance         = 1e-12;
-    SolverSettings wanted         = nest.parameters.solver;
+    SolverSettings wanted         = nest.parameters().solver;
     wanted.stop_at_discretization = true;
     DiscretizationStop<dim> stop(wanted);
 
@@ -75,7 +75,7 @@ namespace
             extrapolation_low  = std::min(extrapolation_low, ratio);
             extrapolation_high = std::max(extrapolation_high, ratio);
           }
-    } while (nest.refine());
+    } while (nest.advance());
     check(converged, "all meshes are solved");
     check_below(share, .1 / 8., "error of the iteration over estimated error");
     check_below(extrapolation_high, 10., "the error is not overestimated much");

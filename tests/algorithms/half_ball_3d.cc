@@ -161,8 +161,7 @@ namespace
     const Discretized<3> discretization(scene, *mesh);
     VectorType              u = admissible_start(discretization);
     ContactState            state(discretization.contact().size(), false);
-    CoulombSolver<3>        solver(
-      *discretization.hierarchy, discretization.problem(), parameters.solver);
+    ContactSolver<3>        solver(discretization, without_safeguards(parameters.solver));
     const SolverReport report = solver.solve(u, state);
     const Measured     result = measure(discretization.contact(), state, report);
     return result;
@@ -252,7 +251,7 @@ main(int argc, char **argv)
       if (iteration.level() >= 2)
         n_cycles =
           std::max<unsigned int>(n_cycles, iteration.report().cycles.size());
-  } while (iteration.refine());
+  } while (iteration.advance());
   const Measured m = measure(
     iteration.discretization().contact(), iteration.state(), iteration.report());
   check_zone(m, .02);

@@ -57,7 +57,7 @@ namespace
           std::max<unsigned int>(result.cycles, iteration.report().cycles.size());
         result.counts.push_back(
           {iteration.state().n_contact(), iteration.state().n_sticking()});
-    } while (iteration.refine());
+    } while (iteration.advance());
 
     const ContactBoundary<2> &contact  = iteration.discretization().contact();
     const VectorType         &residual = iteration.report().residual;

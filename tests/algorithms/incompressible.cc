@@ -124,7 +124,7 @@ namespace
         iteration.solve();
         check(iteration.report().converged, "  converges");
         errors.push_back(measure(iteration, power_of_pressure));
-    } while (iteration.refine());
+    } while (iteration.advance());
     return errors;
   }
 

@@ -43,7 +43,7 @@ namespace
         if (!iteration.report().converged)
           std::cout << "no convergence on level " << iteration.level()
                     << std::endl;
-    } while (iteration.refine());
+    } while (iteration.advance());
     const Discretization<2> &d = iteration.discretization();
     std::cout << iteration.mesh().n_active_cells() << " cells" << std::endl;
 
@@ -147,8 +147,7 @@ namespace
     const ContactBoundary<2> &contact = discretization.contact();
     VectorType                u       = admissible_start(discretization);
     ContactState              state(contact.size(), true);
-    CoulombSolver<2>          solver(
-      *discretization.hierarchy, discretization.problem(), parameters.solver);
+    ContactSolver<2>          solver(discretization, without_safeguards(parameters.solver));
     const SolverReport report = solver.solve(u, state);
     discretization.hanging_nodes().distribute(u);
 
@@ -286,7 +285,7 @@ namespace
           }
         last_energy_error   = energy_error;
         last_pressure_error = pressure_error;
-    } while (iteration.refine());
+    } while (iteration.advance());
   }
 } // namespace
 

@@ -136,8 +136,7 @@ namespace
     const ContactBoundary<3> &contact = discretization.contact();
     VectorType                u       = admissible_start(discretization);
     ContactState              state(contact.size(), true);
-    CoulombSolver<3>          solver(
-      *discretization.hierarchy, discretization.problem(), parameters.solver);
+    ContactSolver<3>          solver(discretization, without_safeguards(parameters.solver));
     const SolverReport report = solver.solve(u, state);
     discretization.hanging_nodes().distribute(u);
 
@@ -256,4 +255,5 @@ main(int argc, char **argv)
       all.local_solver = LocalSolver::uzawa;
       stick_slip(all);
     }
-}
+}#include <common/algorithms/contact_solver.h>
+

@@ -12,11 +12,7 @@
 // for. What the model says is looked at besides.
 
 #include <common/algorithms/nested_iteration.h>
-#include <common/iteration/coarse_cycle.h>
-#include <common/iteration/linearization.h>
-#include <common/iteration/monotone_smoother.h>
-#include <common/iteration/monotone_multigrid.h>
-#include <common/iteration/tresca_functional.h>
+#include <common/iteration/monotone_correction.h>
 
 #include <iostream>
 
@@ -79,9 +75,7 @@ namespace
 
       VectorType         u = admissible_start(discretization);
       ContactState       state(discretization.contact().size(), true);
-      CoulombSolver<dim> solver(*discretization.hierarchy,
-                                discretization.problem(),
-                                parameters.solver);
+      ContactSolver<dim> solver(discretization, without_safeguards(parameters.solver));
       converged      = solver.solve(u, state).converged;
       length         = u.linfty_norm();
       double largest = 0;
@@ -221,12 +215,11 @@ namespace
     const Discretization<dim>  &d       = *fixture.discretization;
     const DiscreteProblem<dim>  problem = fixture.problem();
     const TrescaFunctional<dim> functional(problem);
-    const double                F = problem.friction_coefficient;
-    const MonotoneSmoother<dim> smoother(
-      d.stiffness().blocks(), d.constraints(), d.contact(), F);
-    Linearization<dim> linearization(
-      d.stiffness().blocks(), d.constraints(), d.contact(), F, TruncationVariant::phases);
-    CoarseCycle<dim> coarse(d.stiffness().blocks(), *d.hierarchy, d.constraints(), cycle, 6);
+    const MonotoneSmoother<dim> smoother(problem);
+    Linearization<dim>       linearization(problem, TruncationVariant::phases);
+    Levels<dim>              levels(d.dof_handler(), problem);
+    TruncatedCorrection<dim> truncated(levels, cycle, 6);
+    MonotoneCorrection<dim>  monotone(levels, cycle, 6);
 
     double increase_in_sweeps = 0, increase_in_correction = 0,
            increase_in_model = 0, increase_in_step = 0, penetration = -1e300,
@@ -240,6 +233,7 @@ namespace
         VectorType   u      = fixture.random_start();
         ContactState state  = fixture.initial_state();
         double       energy = functional.energy(u, state);
+        Iterate      x(u, state);
 
         const auto compare = [&](double &largest_increase) {
           const double now = functional.energy(u, state);
@@ -255,7 +249,7 @@ namespace
           {
             for (unsigned int sweep = 0; sweep < 3; ++sweep)
               {
-                smoother.sweep(u, problem.forces, state, false, false);
+                smoother.forward(x, 1);
                 compare(increase_in_sweeps);
               }
             increase_in_step = std::max(
@@ -268,17 +262,18 @@ namespace
                  ? (state.sticks(p) ? sticking : sliding)
                  : (state.sticks(p) ? open_but_held : open))++;
 
-            linearization.update(u, state);
-            coarse.update(linearization.truncation());
             const VectorType residual = fixture.residual(u);
-            VectorType       r(residual), v(u);
-            linearization.linearize_residual(r, u, state);
+            x.residual                = residual;
+            linearization.update(x);
+            VectorType r(residual), v(u);
+            linearization.linearize_residual(r, x);
 
             if (correction == CoarseCorrection::monotone)
               {
                 VectorType lower(u), upper(u);
-                linearization.bounds(lower, upper, u, state);
-                coarse.apply_within_bounds(v, r, lower, upper);
+                linearization.bounds(lower, upper, x);
+                monotone.update(linearization, x);
+                monotone.apply(v, r);
 
                 // Bounds hold for components of nodes that are not truncated;
                 // a truncated one moves within its free subspace.
@@ -299,9 +294,9 @@ namespace
                 for (unsigned int p = 0; p < state.size(); ++p)
                   if (state.normal_force(p) > 0 && !state.sticks(p))
                     {
-                      const auto before = slip_of<dim>((d.contact())[p], u);
+                      const auto before = slip_of<dim>(d.contact()[p], u);
                       const auto after =
-                        before + slip_of<dim>((d.contact())[p], v);
+                        before + slip_of<dim>(d.contact()[p], v);
                       phases_kept = phases_kept &&
                         after * before >=
                           -1e-13 * fixture.length * before.norm();
@@ -318,7 +313,8 @@ namespace
               }
             else
               {
-                coarse.apply(v, r);
+                truncated.update(linearization, x);
+                truncated.apply(v, r);
                 descent = descent && (r * v > 0 || r.l2_norm() == 0);
               }
             VectorType Tv(v);
@@ -331,12 +327,11 @@ namespace
             if (correction == CoarseCorrection::truncated)
               {
                 v *= functional.minimize_along(
-                  v, u, state, residual * v, v * fixture.product(v), 2.);
+                  v, x, residual * v, v * fixture.product(v), 2.);
                 if (functional.project(v, u) > 0)
                   v *= functional.minimize_along(
                     v,
-                    u,
-                    state,
+                    x,
                     residual * v,
                     v * fixture.product(v),
                     functional.admissible_length(v, u, 2.));
@@ -345,7 +340,7 @@ namespace
             compare(increase_in_correction);
             for (unsigned int p = 0; p < state.size(); ++p)
               {
-                const ContactNode<dim> &node = (d.contact())[p];
+                const ContactNode<dim> &node = d.contact()[p];
                 if (state.in_contact(p))
                   disturbed = std::max(
                     disturbed, std::abs(normal_component(node, u) - node.gap));
@@ -355,7 +350,7 @@ namespace
 
             for (unsigned int sweep = 0; sweep < 3; ++sweep)
               {
-                smoother.sweep(u, problem.forces, state, false, true);
+                smoother.backward(x, 1);
                 compare(increase_in_sweeps);
               }
           }
@@ -418,9 +413,10 @@ namespace
 
               VectorType             u(u_0);
               ContactState           state = fixture.initial_state();
-              MonotoneMultigrid<dim> multigrid(*d.hierarchy, problem, settings);
+              ContactSolver<dim>     solver(
+                d.dof_handler(), problem, without_safeguards(settings));
               const double           first  = functional.energy(u, state);
-              const MultigridResult  result = multigrid.solve(u, state, false);
+              const SolverReport     result = solver.solve(u, state);
               converged                     = converged && result.converged;
               double last                   = first;
               for (const CycleInfo &info : result.cycles)
@@ -437,13 +433,10 @@ namespace
                          functional.largest_penetration(u) / fixture.length);
               certificate =
                 std::max(certificate,
-                         make_certificate<dim>(u,
-                                               fixture.residual(u),
-                                               d.constraints(),
-                                               d.contact(),
-                                               state,
-                                               problem.friction_coefficient,
-                                               false)
+                         make_certificate(problem,
+                                          u,
+                                          fixture.residual(u),
+                                          state)
                            .largest());
               for (unsigned int p = 0; p < state.size(); ++p)
                 converged = converged &&
@@ -492,7 +485,7 @@ namespace
         if (line % 3 == 0)
           for (unsigned int p = 0; p < state.size(); p += 2)
             {
-              const ContactNode<dim> &node = (d.contact())[p];
+              const ContactNode<dim> &node = d.contact()[p];
               const auto              u_T  = slip_of<dim>(node, u);
               for (unsigned int t = 1; t < dim; ++t)
                 for (unsigned int c = 0; c < dim; ++c)
@@ -633,18 +626,17 @@ namespace
     const DiscreteProblem<dim> problem = fixture.problem();
     VectorType                 u       = fixture.random_start();
     ContactState               state   = fixture.initial_state();
-    MonotoneMultigrid<dim> multigrid(*d.hierarchy, problem, SolverSettings());
-    multigrid.solve(u, state, false);
-    Linearization<dim> linearization(d.stiffness().blocks(),
-                                     d.constraints(),
-                                     d.contact(),
-                                     problem.friction_coefficient,
-                                     TruncationVariant::phases);
-    linearization.update(u, state);
-    const Truncation<dim> &truncation = linearization.truncation();
-    CoarseCycle<dim>       coarse(
-      d.stiffness().blocks(), *d.hierarchy, d.constraints(), Cycle::V, 6);
-    coarse.update(truncation);
+    ContactSolver<dim>(d.dof_handler(),
+                       problem,
+                       without_safeguards(SolverSettings()))
+      .solve(u, state);
+    Linearization<dim> linearization(problem, TruncationVariant::phases);
+    const Iterate      iterate(u, state);
+    linearization.update(iterate);
+    const Truncation<dim>   &truncation = linearization.truncation();
+    Levels<dim>              levels(d.dof_handler(), problem);
+    TruncatedCorrection<dim> coarse(levels, Cycle::V, 6);
+    coarse.update(linearization, iterate);
 
     VectorType b = fixture.random_direction();
     truncation.apply(b.begin());
@@ -675,7 +667,7 @@ namespace
       for (unsigned int node = 0; node < d.constraints().n_owned_nodes(); ++node)
         if (!d.constraints().is_hanging(node))
           {
-            const double *block  = d.stiffness().blocks().block(d.stiffness().blocks().row_begin(node));
+            const double *block  = d.stiffness().diagonal_block(node);
             const double  factor = 1. / trace<dim>(block);
             for (unsigned int c = 0; c < dim; ++c)
               w.local_element(dim * node + c) *= factor;
@@ -713,7 +705,7 @@ namespace
     bool                      participants = true;
     for (const unsigned int n_steps : {0, 1, 2})
       {
-        Recombination<dim> recombination(n_steps);
+        Recombination<dim> recombination(problem, n_steps);
         VectorType         x(b);
         x = 0.;
         needed.push_back(1000);
@@ -853,13 +845,13 @@ main(int argc, char **argv)
       iteration.solve();
       for (const unsigned int n_steps : {0, 1})
         {
-          SolverSettings settings   = iteration.parameters.solver;
+          SolverSettings settings   = iteration.parameters().solver;
           settings.recombined_steps = n_steps;
           VectorType   u;
           ContactState state(0, false);
           cycles[n_steps] +=
             iteration.solve_with(settings, u, state).cycles.size();
         }
-  } while (iteration.refine());
+  } while (iteration.advance());
   check(cycles[1] < cycles[0], "fewer with recombination than without");
 }

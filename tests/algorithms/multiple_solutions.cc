@@ -14,6 +14,7 @@
 // the same time: friction is strong enough to hold the node, but a node that
 // slides is lifted by its own slip, which takes away the friction.
 
+#include <common/algorithms/contact_solver.h>
 #include <common/algorithms/safeguarded_solver.h>
 
 #include <iostream>
@@ -123,14 +124,9 @@ main(int argc, char *argv[])
     {
       const VectorType u = node.displacement(s.u_t, s.u_y);
       VectorType       residual(u);
-      d.stiffness().blocks().residual(residual.begin(), d.loads().begin(), u.begin());
-      const Certificate certificate = make_certificate<2>(u,
-                                                          residual,
-                                                          d.constraints(),
-                                                          d.contact(),
-                                                          ContactState(1, true),
-                                                          F,
-                                                          true);
+      d.stiffness().residual(residual, d.loads(), u);
+      const Certificate certificate = make_certificate(
+        d.problem(), u, residual, ContactState(1, true));
       check_below(certificate.largest(), 1e-12, "law of contact: " + s.name);
     }
 
@@ -174,7 +170,7 @@ main(int argc, char *argv[])
           state.set_normal_force(0, s.pressure);
           SolverSettings settings = algorithm.second;
           settings.safeguards     = false;
-          CoulombSolver<2>   solver(*d.hierarchy, d.problem(), settings);
+          ContactSolver<2>   solver(d, without_safeguards(settings));
           const SolverReport report = solver.solve(u, state);
           std::cout << "  from " << start.first << ": "
                     << (report.converged ? node.name_of(u, solutions)

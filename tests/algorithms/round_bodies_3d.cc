@@ -355,7 +355,7 @@ namespace
         largest_difference = std::max(largest_difference, difference);
         const double e     = imbalance(iteration);
         largest_imbalance  = std::max(largest_imbalance, e);
-    } while (iteration.refine());
+    } while (iteration.advance());
     check(converged, "converged");
     check(n_different == 0, "nodes and their states are symmetric");
     check_below(

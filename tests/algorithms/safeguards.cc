@@ -93,7 +93,7 @@ namespace
     const Discretized<2> d(scene, *mesh);
     u     = admissible_start(d);
     state = ContactState(d.contact().size(), d.problem().has_friction());
-    SafeguardedSolver<2> solver(*d.hierarchy, d.problem(), parameters.solver);
+    ContactSolver<2> solver(d, parameters.solver);
     return solver.solve(u, state);
   }
 
@@ -148,31 +148,23 @@ namespace
     NestedIteration<2>       nest(read_parameters(
       SCENES_DIR "/raous.prm", {"Contact/Friction coefficient=10"}));
     nest.begin();
-    const Discretization<2> *d        = nest.discretization().get();
-    unsigned int             failures = 0, solved = 0;
-    std::string              last;
+    unsigned int failures = 0, solved = 0;
+    std::string  last;
     do
       {
-        d = nest.discretization().get();
-        VectorType     u;
-        ContactState   state    = nest.make_guess(u);
-        SolverSettings settings = nest.parameters.solver;
-        settings.safeguards     = false;
-        CoulombSolver<2> plain(*d->hierarchy, d->problem(), settings);
-        failures += !plain.solve(u, state).converged;
-
-        nest.displacement()   = nest.guess();
-        nest.state()          = nest.make_guess(nest.displacement());
-        settings.safeguards = true;
-        SafeguardedSolver<2> safe(*d->hierarchy, d->problem(), settings);
-        nest.report() = safe.solve(nest.displacement(), nest.state());
-        solved += nest.report().converged;
+        VectorType   u;
+        ContactState state(0, false);
+        failures +=
+          !nest.solve_with(without_safeguards(nest.parameters().solver),
+                           u,
+                           state)
+             .converged;
+        solved += nest.solve().converged;
         if (!nest.report().attempts.empty())
           last = nest.report().attempts.back().name;
-        nest.accept();
-    } while (nest.refine());
+    } while (nest.advance());
     check(failures > 0, "without safeguards there are meshes without solution");
-    check(solved == nest.parameters.refinement.levels + 1,
+    check(solved == nest.parameters().refinement.levels + 1,
           "with them there is one on all meshes");
     std::cout << "found by " << last << std::endl;
   }

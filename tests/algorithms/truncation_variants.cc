@@ -45,7 +45,7 @@ main(int argc, char **argv)
         for (const CoarseCorrection correction :
              {CoarseCorrection::truncated, CoarseCorrection::monotone})
           {
-            SolverSettings settings    = iteration.parameters.solver;
+            SolverSettings settings    = iteration.parameters().solver;
             settings.truncation        = truncation;
             settings.coarse_correction = correction;
             VectorType         u;
@@ -56,7 +56,7 @@ main(int argc, char **argv)
               report.converged ? report.cycles.size() : limit);
           }
       iteration.solve();
-  } while (iteration.refine());
+  } while (iteration.advance());
   std::cout << iteration.discretization().dof_handler().n_dofs()
             << " degrees of freedom, " << iteration.state().n_contact()
             << " nodes in contact, " << iteration.state().n_sticking() << " stick"

@@ -28,9 +28,9 @@ namespace
     nest.begin();
     do
       nest.solve();
-    while (nest.refine());
-    std::cout << nest.parameters.name << ", dimension " << dim
-              << ", F = " << nest.parameters.contact.friction_coefficient
+    while (nest.advance());
+    std::cout << nest.parameters().name << ", dimension " << dim
+              << ", F = " << nest.parameters().contact.friction_coefficient
               << std::endl;
     if (both_phases)
       check(nest.state().n_sticking() > 0 &&
@@ -84,7 +84,7 @@ namespace
         if (nest.level() > 0)
           n_coarser = nest.discretization().dof_handler().n_dofs();
         nest.solve();
-    } while (nest.refine());
+    } while (nest.advance());
     Contest<2>         contest(nest, n_coarser, 60.);
     std::ostringstream out;
     contest.keep_history(out);

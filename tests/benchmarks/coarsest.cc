@@ -39,7 +39,12 @@ namespace Benchmark
     nest.begin();
     const double               setup = timer.wall_time();
     const Discretization<dim> &d     = nest.discretization();
-    const LevelMatrices<dim>   matrices(d.stiffness().blocks(), *d.hierarchy, d.constraints());
+    const LevelHierarchy<dim>  hierarchy(d.dof_handler(),
+                                        d.constraints(),
+                                        d.stiffness().blocks());
+    const LevelMatrices<dim>   matrices(d.stiffness().blocks(),
+                                      hierarchy,
+                                      d.constraints());
     VectorType                 c(d.dof_handler().locally_owned_dofs(),
                  Compatibility::mpi_communicator(d.dof_handler()));
     VectorType                 rhs(c);
@@ -59,7 +64,7 @@ namespace Benchmark
             continue;
           }
         timer.restart();
-        CoarsestSolver<dim> coarsest(*d.hierarchy, matrices, method);
+        CoarsestSolver<dim> coarsest(hierarchy, matrices, method);
         if (!is_direct)
           coarsest.solve(c.begin(), rhs.begin()); // makes the hierarchy
         const double first = timer.wall_time();
@@ -70,7 +75,7 @@ namespace Benchmark
         if (!is_direct)
           std::printf(" %4u", coarsest.algebraic_solver().n_iterations());
 
-        SolverSettings settings  = nest.parameters.solver;
+        SolverSettings settings  = nest.parameters().solver;
         settings.coarsest_method = method;
         VectorType         u;
         ContactState       state(0, false);

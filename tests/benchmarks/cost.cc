@@ -77,29 +77,23 @@ namespace Benchmark
                   const VectorType          &solution,
                   const ContactState        &solution_state)
   {
-    const auto                 problem = d.problem();
-    const ContactBoundary<dim> nothing(d.mapping(),
-                                       d.dof_handler(),
-                                       d.hanging_nodes(),
-                                       d.constraints(),
-                                       numbers::invalid_boundary_id,
-                                       Obstacle<dim>(),
-                                       ContactNormal::body);
-    const auto seconds = [&](const ContactBoundary<dim> &contact,
-                             const double                F,
+    const DiscreteProblem<dim> &problem = d.problem();
+    const ContactBoundary<dim>  nothing;
+    const DiscreteProblem<dim>  without = {problem.stiffness,
+                                           problem.forces,
+                                           problem.constraints,
+                                           nothing,
+                                           FrictionLaw::none,
+                                           0.};
+    const auto seconds = [&](const DiscreteProblem<dim> &which,
                              ContactState                state) {
-      const MonotoneSmoother<dim> smoother(
-        problem.matrix, problem.constraints, contact, F);
-      VectorType                             u = solution;
-      typename MonotoneSmoother<dim>::Sweeps what;
-      what.n                    = 3;
-      what.update_normal_forces = true;
-      return best_of(
-        10, [&]() { smoother.sweeps(u, problem.forces, state, what); });
+      const MonotoneSmoother<dim> smoother(which);
+      VectorType                  u = solution;
+      Iterate                     x(u, state, which.has_friction());
+      return best_of(10, [&]() { smoother.backward(x, 3); });
     };
-    return seconds(
-             problem.contact, problem.effective_coefficient(), solution_state) /
-      seconds(nothing, 0., ContactState(0, false));
+    return seconds(problem, solution_state) /
+      seconds(without, ContactState(0, false));
   }
 
 
@@ -110,23 +104,28 @@ namespace Benchmark
                   const VectorType           &solution,
                   const ContactState         &solution_state)
   {
-    const MonotoneSmoother<dim> smoother(problem.matrix,
-                                         problem.constraints,
-                                         problem.contact,
-                                         problem.effective_coefficient());
+    const MonotoneSmoother<dim> smoother(problem);
     VectorType                  u       = solution;
     ContactState                state   = solution_state;
-    const double                seconds = best_of(
-      10, [&]() { smoother.sweep(u, problem.forces, state, true, false); });
+    Iterate                     x(u, state, true);
+    const double seconds = best_of(10, [&]() { smoother.backward(x, 1); });
     // What a sweep must read and write at least: blocks and column numbers, row
     // starts and inverse diagonals, right hand side, and the vector twice.
-    const auto  &A = problem.matrix;
+    const auto  &A = problem.stiffness.blocks();
     const double bytes =
       A.n_blocks() * (dim * dim * sizeof(double) + sizeof(unsigned int)) +
       A.n_rows() *
         (sizeof(std::size_t) + dim * dim * sizeof(double) +
          3 * dim * sizeof(double));
     return bytes / seconds;
+  }
+
+
+
+  double
+  seconds_of(const PhaseCosts &costs, const SolverPhase phase)
+  {
+    return costs[static_cast<unsigned int>(phase)].seconds;
   }
 
 
@@ -154,36 +153,29 @@ namespace Benchmark
 
     NestedIteration<dim> nest(parameters);
     nest.begin();
-    MultigridCost        cost;
+    PhaseCosts           costs;
     double               seconds;
     do
       {
         nest.solve();
         demand_convergence(nest.report());
-        cost                               = nest.cost;
+        costs                               = nest.report().costs;
         seconds                            = nest.solve_seconds();
         const Discretization<dim> &d       = nest.discretization();
-        const auto                 problem = d.problem();
+        const DiscreteProblem<dim> &problem = d.problem();
 
         const NodalConstraints<dim> bonded =
           bond(problem, nest.displacement(), nest.state());
-        const ContactBoundary<dim> nothing(d.mapping(),
-                                           d.dof_handler(),
-                                           d.hanging_nodes(),
-                                           bonded,
-                                           numbers::invalid_boundary_id,
-                                           Obstacle<dim>(),
-                                           ContactNormal::body);
-        const LevelHierarchy<dim>  hierarchy(
-          d.dof_handler(), bonded, problem.matrix);
-        CoulombSolver<dim> linear_solver(hierarchy,
-                                         {problem.matrix,
-                                          problem.forces,
-                                          bonded,
-                                          nothing,
-                                          FrictionLaw::none,
-                                          0.},
-                                         parameters.solver);
+        const ContactBoundary<dim> nothing;
+        ContactSolver<dim>         linear_solver(
+          d.dof_handler(),
+          {problem.stiffness,
+                   problem.forces,
+                   bonded,
+                   nothing,
+                   FrictionLaw::none,
+                   0.},
+          without_safeguards(parameters.solver));
         VectorType         u;
         ContactState       no_state(0, false);
         nest.make_guess(u);
@@ -202,32 +194,36 @@ namespace Benchmark
                     static_cast<unsigned int>(nest.report().cycles.size()),
                     seconds,
                     1e6 * seconds / n_dofs,
-                    100. * cost.matrix_updates / seconds,
+                    100. * seconds_of(costs, SolverPhase::matrix_updates) / seconds,
                     static_cast<unsigned int>(linear.cycles.size()),
                     linear_solve,
                     seconds / linear_solve,
                     ratio_of_sweeps(d, nest.displacement(), nest.state()));
         std::fflush(stdout);
-    } while (nest.refine());
+    } while (nest.advance());
 
     std::printf("shares of the solve time: leading sweeps %.0f%%, coarse "
                 "cycle %.0f%%, updates %.1f%%, recombination and line "
                 "search %.0f%%\n",
-                100. * cost.leading_sweeps / seconds,
-                100. * cost.coarse_correction / seconds,
-                100. * cost.matrix_updates / seconds,
-                100. * cost.line_search / seconds);
+                100. * seconds_of(costs, SolverPhase::leading_sweeps) / seconds,
+                100. *
+                  (seconds_of(costs, SolverPhase::coarse_sweeps) +
+                   seconds_of(costs, SolverPhase::transfer) +
+                   seconds_of(costs, SolverPhase::coarsest)) /
+                  seconds,
+                100. * seconds_of(costs, SolverPhase::matrix_updates) / seconds,
+                100. * seconds_of(costs, SolverPhase::line_search) / seconds);
 
     // What holds the memory.
     const Discretization<dim> &d = nest.discretization();
-    const CoulombSolver<dim>   solver(
-      *d.hierarchy, d.problem(), parameters.solver);
+    ContactSolver<dim>         solver(d, parameters.solver);
     const double n_dofs = d.dof_handler().n_dofs();
     std::printf("bytes per dof: leaf matrix %.0f, level hierarchy %.0f, "
                 "smoother and level matrices %.0f; peak of the process %.0f\n",
-                d.stiffness().blocks().memory_consumption() / n_dofs,
-                d.hierarchy->memory_consumption() / n_dofs,
-                solver.multigrid().memory_consumption() / n_dofs,
+                d.stiffness().memory_consumption() / n_dofs,
+                solver.levels().hierarchy().memory_consumption() / n_dofs,
+                (solver.iteration().memory_consumption() +
+                 solver.levels().memory_consumption()) / n_dofs,
                 peak_memory() / n_dofs);
 
     // After the peak of the memory has been read.

@@ -39,30 +39,31 @@ namespace Benchmark
     if (!(size > 0))
       size = 1e-3 * GridTools::diameter(nest.mesh());
 
-    nest.guess()           = 0.;
-    nest.guess_tractions = 0.;
+    VectorType &guess = *nest.guess()[0], &tractions = *nest.guess()[1];
+    guess             = 0.;
+    tractions         = 0.;
     if (name == "random")
       {
         std::mt19937 random(1);
-        for (unsigned int i = 0; i < nest.guess().locally_owned_size(); ++i)
-          nest.guess().local_element(i) =
+        for (unsigned int i = 0; i < guess.locally_owned_size(); ++i)
+          guess.local_element(i) =
             size * (2. * random() / std::mt19937::max() - 1.);
       }
     else if (name == "inside")
       for (const ContactNode<dim> &node : d.contact())
         for (unsigned int c = 0; c < dim; ++c)
           {
-            nest.guess().local_element(dim * node.node + c) =
+            guess.local_element(dim * node.node + c) =
               100 * size * node.normal()[c];
-            nest.guess_tractions.local_element(dim * node.node + c) = -1e3 *
-              nest.parameters.material.youngs_modulus() * node.normal()[c];
+            tractions.local_element(dim * node.node + c) = -1e3 *
+              nest.parameters().material.youngs_modulus() * node.normal()[c];
           }
     else if (name == "lifted")
       {
         if (d.contact().size() > 0)
-          for (unsigned int i = 0; i < nest.guess().locally_owned_size(); ++i)
-            nest.guess().local_element(i) =
-              -10 * size * (d.contact())[0].normal()[i % dim];
+          for (unsigned int i = 0; i < guess.locally_owned_size(); ++i)
+            guess.local_element(i) =
+              -10 * size * d.contact()[0].normal()[i % dim];
       }
     else if (name != "zero")
       throw InputError("There is no guess '" + name +

@@ -290,7 +290,7 @@ namespace Benchmark
                                    nest.displacement(),
                                    nest.tractions());
           clock.start();
-          another = nest.refine();
+          another = nest.advance();
         }
       std::string reference = "exact solution";
       if (exact)
@@ -302,7 +302,11 @@ namespace Benchmark
         {
           for (unsigned int i = 0; i < options.finer; ++i)
             {
-              nest.refine(options.reference_strategy);
+              if (options.reference_strategy == RefinementStrategy::uniform)
+                nest.mark_all();
+              else
+                nest.mark(nest.estimate());
+              nest.refine();
               solve(nest);
             }
           compare_with_reference(nest);
@@ -355,26 +359,14 @@ namespace Benchmark
     double
     estimate(const NestedIteration<dim> &nest) const
     {
-      const Discretization<dim> &d = nest.discretization();
-      return estimate_contact_error(nest.scene(),
-                                    d.mapping(),
-                                    d.dof_handler(),
-                                    d.hanging_nodes(),
-                                    d.constraints(),
-                                    d.contact(),
-                                    nest.displacement(),
-                                    nest.tractions())
-        .relative();
+      return nest.estimate().relative();
     }
 
     LevelRecord
     record(const NestedIteration<dim> &nest) const
     {
-      const Discretization<dim> &d = nest.discretization();
       return make_level_records(nest.level(),
-                                d.dof_handler(),
-                                d.constraints(),
-                                d.contact(),
+                                nest.discretization(),
                                 nest.displacement(),
                                 nest.state(),
                                 nest.report())

@@ -147,9 +147,9 @@ namespace Benchmark
 
 
 
-  // The stiffer or softer part of the body.
+  // Elasticity with a part of the body that is stiffer or softer.
   template <int dim>
-  std::function<double(const Point<dim> &)>
+  CellForm<dim>
   make_inclusion(const Parameters &parameters, const double factor)
   {
     if (factor == 1)
@@ -157,12 +157,15 @@ namespace Benchmark
     const auto mesh = make_triangulation<dim>();
     Scene<dim>(parameters).make_coarse_mesh(*mesh);
     const BoundingBox<dim> box = GridTools::compute_bounding_box(*mesh);
-    return [box, factor](const Point<dim> &point) {
-      const Point<dim> p      = box.real_to_unit(point);
+    return [box, factor, form = elasticity<dim>(parameters.material)](
+             const FEValues<dim> &fe_values, FullMatrix<double> &cell_matrix) {
+      form(fe_values, cell_matrix);
+      const Point<dim> p = box.real_to_unit(fe_values.get_cell()->center());
       bool             inside = p[dim - 1] < 0.25;
       for (unsigned int d = 0; d + 1 < dim; ++d)
         inside = inside && std::abs(p[d] - 0.5) < 0.25;
-      return inside ? factor : 1.;
+      if (inside)
+        cell_matrix *= factor;
     };
   }
 
@@ -174,38 +177,36 @@ namespace Benchmark
   void
   solve_level(NestedIteration<dim> &nest, const double limit)
   {
-    const Discretization<dim>                &d       = nest.discretization();
-    const auto                                problem = d.problem();
-    Timer                                     timer;
-    typename SafeguardedSolver<dim>::Progress progress = [&](const unsigned int,
-                                                             const double) {
+    Timer          timer;
+    const Progress progress = [&](const unsigned int, const double) {
       if (timer.wall_time() > limit)
         throw std::runtime_error("it took too long");
     };
-    nest.state() = nest.make_guess(nest.displacement());
+    VectorType   u;
+    ContactState state(0, false);
+    SolverReport report;
     try
       {
-        SafeguardedSolver<dim> solver(
-          *d.hierarchy, problem, nest.parameters.solver);
-        nest.report() = solver.solve(nest.displacement(), nest.state(), progress);
-        if (!nest.report().attempts.empty())
+        report =
+          nest.solve_with(nest.parameters().solver, u, state, progress);
+        if (!report.attempts.empty())
           std::cerr << "  level " << nest.level() << ": "
-                    << describe_attempts(nest.report()) << std::endl;
-        if (!nest.report().converged)
+                    << describe_attempts(report) << std::endl;
+        if (!report.converged)
           std::cerr << "  level " << nest.level()
-                    << " was not solved: " << nest.report().certificate.describe()
+                    << " was not solved: " << report.certificate.describe()
                     << std::endl;
       }
     catch (const std::exception &error)
       {
         std::cerr << "  level " << nest.level()
                   << " was not solved: " << error.what() << std::endl;
-        nest.report().residual.reinit(nest.displacement());
-        problem.matrix.residual(nest.report().residual.begin(),
-                                problem.forces.begin(),
-                                nest.displacement().begin());
+        certify(report,
+                TrescaFunctional<dim>(nest.discretization().problem()),
+                u,
+                state);
       }
-    nest.accept();
+    nest.accept(u, state, report);
   }
 
 
@@ -219,18 +220,6 @@ namespace Benchmark
       if (c == '"')
         c = '\'';
     return '"' + text + '"';
-  }
-
-
-
-  // As NestedIteration::refine() will see it.
-  template <int dim>
-  bool
-  is_last(const NestedIteration<dim> &nest)
-  {
-    const auto &refinement = nest.parameters.refinement;
-    return nest.level() >= refinement.levels ||
-      nest.discretization().dof_handler().n_dofs() >= refinement.maximum_dofs;
   }
 
 
@@ -275,11 +264,18 @@ namespace Benchmark
         if (given)
           {
             set_guess(nest, options.guess);
-            nest.state() = nest.make_guess(nest.displacement());
+            VectorType         u;
+            const ContactState state = nest.make_guess(u);
+            SolverReport       guess;
+            certify(guess,
+                    TrescaFunctional<dim>(nest.discretization().problem()),
+                    u,
+                    state);
+            nest.accept(u, state, guess);
           }
         else
           solve_level(nest, options.limit);
-        const bool last   = given || is_last(nest);
+        const bool last   = given || nest.is_last();
         const bool wanted = options.levels.empty()
           ? last || options.every_level
           : std::find(options.levels.begin(),
@@ -330,7 +326,7 @@ namespace Benchmark
               }
           }
         n_coarser = nest.discretization().dof_handler().n_dofs();
-        more      = !given && nest.refine();
+        more      = !given && nest.advance();
       }
   }
 } // namespace Benchmark

@@ -112,8 +112,9 @@ namespace
     using S              = Solution<dim>;
 
     const auto evaluate = [&](const S &s, const bool coulomb) {
-      return make_certificate<dim>(
-        s.u, s.r, constraints, contact, s.state, friction, coulomb);
+      const DiscreteProblem<dim> discrete = problem.friction_problem(
+        friction, coulomb ? FrictionLaw::coulomb : FrictionLaw::tresca);
+      return make_certificate(discrete, s.u, s.r, s.state);
     };
     std::cout << dim << "D" << std::endl;
     for (const bool coulomb : {true, false})

@@ -242,9 +242,7 @@ namespace
     Random     random(1);
     Parameters parameters = block_parameters<dim>(FrictionLaw::coulomb, .4);
     RandomProblem<dim> problem(parameters, 0, 0., random);
-    problem.mesh->refine_global(dim == 2 ? 5 : 3);
-    problem.discretization =
-      std::make_unique<Discretization<dim>>(problem.scene, *problem.mesh);
+    problem.refine_global(dim == 2 ? 5 : 3);
 
     LevelMatrices<dim> matrices(
       problem.matrix(), problem.hierarchy(), problem.constraints());

@@ -114,13 +114,10 @@ namespace
           contact.push_back(node.second);
 
         const Vector<float> errors(triangulation.n_active_cells());
+        const MappingQ1<dim> mapping;
         writer.write_level(level,
-                           MappingQ1<dim>(),
-                           dof_handler,
-                           u,
-                           constraints,
-                           contact,
-                           &errors);
+                           {mapping, dof_handler, constraints, u, &errors},
+                           contact);
       }
 
     if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)
@@ -170,12 +167,9 @@ namespace
             u(cell->vertex_dof_index(v, 0)) =
               cell->vertex(v)[0] * cell->vertex(v)[1];
     u.update_ghost_values();
-    writer.write_level(0,
-                       MappingQ1<2>(),
-                       dof_handler,
-                       u,
-                       AffineConstraints<double>(),
-                       std::vector<ContactRecord<2>>());
+    const MappingQ1<2>              mapping;
+    const AffineConstraints<double> constraints;
+    writer.write_level(0, {mapping, dof_handler, constraints, u}, {});
 
     if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)
       return;

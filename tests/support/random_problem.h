@@ -173,12 +173,15 @@ namespace Tests
     {
       scene.make_coarse_mesh(*mesh);
       refine_at_random<dim>(*mesh, n_rounds, density, random);
-      discretization.set_up();
-      discretization.assemble(elasticity<dim>(scene.material()));
-      level_hierarchy =
-        std::make_unique<LevelHierarchy<dim>>(discretization.dof_handler(),
-                                              constraints(),
-                                              matrix());
+      discretize();
+    }
+
+    /** Afterwards, and everywhere. */
+    void
+    refine_global(const unsigned int n)
+    {
+      mesh->refine_global(n);
+      discretize();
     }
 
     const NodalConstraints<dim> &
@@ -269,6 +272,17 @@ namespace Tests
 
   private:
     std::unique_ptr<LevelHierarchy<dim>> level_hierarchy;
+
+    void
+    discretize()
+    {
+      discretization.set_up();
+      discretization.assemble(elasticity<dim>(scene.material()));
+      level_hierarchy =
+        std::make_unique<LevelHierarchy<dim>>(discretization.dof_handler(),
+                                              constraints(),
+                                              matrix());
+    }
   };
 
 

@@ -29,7 +29,7 @@ namespace Benchmark
     energy_norm(const DiscreteProblem<dim> &problem, const VectorType &v)
     {
       VectorType Av(v);
-      problem.matrix.vmult(Av.begin(), v.begin());
+      problem.stiffness.vmult(Av, v);
       double sum = 0;
       for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
         sum += v.local_element(i) * Av.local_element(i);
@@ -163,13 +163,6 @@ namespace Benchmark
     , points(node_points(nest.discretization()))
     , bonded(
         bond(nest.discretization().problem(), nest.displacement(), nest.state()))
-    , nothing(nest.discretization().mapping(),
-              nest.discretization().dof_handler(),
-              nest.discretization().hanging_nodes(),
-              bonded,
-              numbers::invalid_boundary_id,
-              Obstacle<dim>(),
-              ContactNormal::body)
   {}
 
 
@@ -188,7 +181,7 @@ namespace Benchmark
   Contest<dim>::bonded_problem() const
   {
     const Discretization<dim> &d = nest.discretization();
-    return {d.stiffness().blocks(), d.loads(), bonded, nothing, FrictionLaw::none, 0.};
+    return {d.stiffness(), d.loads(), bonded, nothing, FrictionLaw::none, 0.};
   }
 
 
@@ -219,13 +212,12 @@ namespace Benchmark
         u     = nest.displacement();
         state = nest.state();
       }
-    SolverSettings settings  = nest.parameters.solver;
+    SolverSettings settings  = nest.parameters().solver;
     settings.inner_tolerance = 1e-13;
     settings.safeguards      = false;
     settings.maximum_cycles  = 60;
-    const LevelHierarchy<dim> hierarchy(
-      nest.discretization().dof_handler(), problem.constraints, problem.matrix);
-    CoulombSolver<dim> solver(hierarchy, problem, settings);
+    ContactSolver<dim> solver(
+      nest.discretization().dof_handler(), problem, settings);
     const SolverReport report = solver.solve(u, state);
     AssertThrow(report.certificate.largest() <= 1e-9,
                 ExcMessage("The reference solution is not one: " +
@@ -248,13 +240,13 @@ namespace Benchmark
     // N^{-1/dim} and the difference is orthogonal to the error, then with
     // q = (N_{J-1}/N_J)^{1/dim} they are d/sqrt(1-q^2) on that level and q
     // times that on this one.
-    out << "# scene=" << nest.parameters.name
+    out << "# scene=" << nest.parameters().name
         << " dofs=" << nest.discretization().dof_handler().n_dofs()
-        << " friction=" << nest.parameters.contact.friction_coefficient
-        << " poisson=" << nest.parameters.material.poisson_ratio() << std::endl;
+        << " friction=" << nest.parameters().contact.friction_coefficient
+        << " poisson=" << nest.parameters().material.poisson_ratio() << std::endl;
     if (n_coarser > 0)
       {
-        VectorType difference(nest.guess());
+        VectorType difference(*nest.guess()[0]);
         difference -= references[false];
         const double d = energy_norm(contact, difference) /
           energy_norm(contact, references[false]);
@@ -275,7 +267,7 @@ namespace Benchmark
   SolverSettings
   Contest<dim>::settings_of(const std::string &name) const
   {
-    SolverSettings settings = nest.parameters.solver;
+    SolverSettings settings = nest.parameters().solver;
     if (name == "default")
       return settings;
     settings.safeguards = false;
@@ -296,10 +288,8 @@ namespace Benchmark
                             const DiscreteProblem<dim> &problem,
                             Recorder                   &recorder)
   {
-    const LevelHierarchy<dim> hierarchy(
-      nest.discretization().dof_handler(), problem.constraints, problem.matrix);
-    // Without safeguards it is a CoulombSolver and no more.
-    SafeguardedSolver<dim> solver(hierarchy, problem, settings);
+    ContactSolver<dim> solver(
+      nest.discretization().dof_handler(), problem, settings);
     recorder.end_setup();
     const SolverReport solution =
       solver.solve(u, state, [&](const unsigned int, const double) {
@@ -308,7 +298,8 @@ namespace Benchmark
     BaselineReport report;
     report.converged  = solution.converged;
     report.iterations = solution.cycles.size();
-    report.memory     = hierarchy.memory_consumption() + solution.solver_memory;
+    report.memory     = solver.levels().hierarchy().memory_consumption() +
+      solver.levels().memory_consumption() + solution.solver_memory;
     if (!solution.attempts.empty())
       {
         report.n_attempts = solution.attempts.size();
@@ -349,7 +340,7 @@ namespace Benchmark
     if (name == "gauss-seidel")
       {
         GaussSeidel<dim> solver(
-          problem, nest.parameters.solver.inner_tolerance, seconds);
+          problem, nest.parameters().solver.inner_tolerance, seconds);
         recorder.end_setup();
         return solver.solve(u, state, watch);
       }
@@ -363,20 +354,9 @@ namespace Benchmark
   Contest<dim>::judge(const DiscreteProblem<dim> &problem) const
   {
     VectorType residual(u);
-    problem.matrix.residual(
-      residual.begin(), problem.forces.begin(), u.begin());
-    Result result;
+    problem.stiffness.residual(residual, problem.forces, u);
     result.certificate =
-      make_certificate<dim>(u,
-                            residual,
-                            problem.constraints,
-                            problem.contact,
-                            state,
-                            problem.effective_coefficient(),
-                            problem.has_friction() &&
-                              problem.friction_law == FrictionLaw::coulomb,
-                            force_of_rounding(problem, u))
-        .largest();
+      make_certificate(problem, u, residual, state).largest();
     result.energy = TrescaFunctional<dim>(problem).energy(u, residual, state);
     result.converged  = result.certificate <= 1e-6;
     result.n_contact  = state.n_contact();

@@ -54,7 +54,7 @@ namespace Benchmark
     , contact(rotated.problem.contact)
   {
     const std::size_t           before = allocated_memory();
-    const NodeBlockMatrix<dim> &A      = rotated.problem.matrix;
+    const NodeBlockMatrix<dim> &A      = rotated.problem.stiffness.blocks();
     std::vector<int>            number(A.n_rows(), -1);
     for (unsigned int i = 0; i < A.n_rows(); ++i)
       {

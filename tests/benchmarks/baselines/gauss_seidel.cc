@@ -13,10 +13,7 @@ namespace Benchmark
     : problem(problem)
     , tolerance(tolerance)
     , seconds(seconds)
-    , smoother(problem.matrix,
-               problem.constraints,
-               problem.contact,
-               problem.effective_coefficient())
+    , smoother(this->problem)
   {}
 
 
@@ -29,23 +26,22 @@ namespace Benchmark
   {
     // Sweeps are quickest several at a time. The increment is that of the last
     // one, for which residuals are compared only now and then.
-    constexpr unsigned int                 n_at_a_time = 10;
-    BaselineReport                         report;
-    Timer                                  timer;
-    typename MonotoneSmoother<dim>::Sweeps what;
-    what.update_normal_forces      = problem.has_friction();
-    what.trust_first_normal_forces = true;
-    report.memory                  = smoother.memory_consumption();
+    constexpr unsigned int n_at_a_time = 10;
+    BaselineReport         report;
+    Timer                  timer;
+    Iterate                x(u, state, problem.has_friction());
+    bool                   first = true;
+    report.memory                = smoother.memory_consumption();
 
-    VectorType residual(u), last_u, last_residual(u);
+    VectorType last_u, last_residual;
     while (timer.wall_time() < seconds)
       {
-        what.n = n_at_a_time - 1;
-        smoother.sweeps(u, problem.forces, state, what, &last_residual);
-        what.trust_first_normal_forces = false;
-        last_u                         = u;
-        what.n                         = 1;
-        smoother.sweeps(u, problem.forces, state, what, &residual);
+        smoother.forward(x, n_at_a_time - 1, first);
+        first         = false;
+        last_u        = u;
+        last_residual = x.residual;
+        smoother.forward(x, 1);
+        const VectorType &residual = x.residual;
         report.iterations += n_at_a_time;
 
         double increment = 0, norm = 0;

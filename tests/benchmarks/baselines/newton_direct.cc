@@ -58,7 +58,7 @@ namespace Benchmark
   NewtonDirect<dim>::choose_neighbors(const unsigned int n_layers)
   {
     const DiscreteProblem<dim> &problem = rotated.problem;
-    const auto                 &A       = problem.matrix;
+    const auto                 &A       = problem.stiffness.blocks();
     for (unsigned int layer = 0; layer < n_layers; ++layer)
       {
         std::vector<char> more = chosen;

@@ -66,7 +66,7 @@ namespace Benchmark
   RotatedProblem<dim>::block(const unsigned int row,
                              const std::size_t  position) const
   {
-    const double  *A = problem.matrix.block(position);
+    const double  *A = problem.stiffness.blocks().block(position);
     NodeBlock<dim> B;
     std::copy(A, A + dim * dim, B.begin());
     const auto turn = [&](const unsigned int p, const bool rows) {
@@ -80,7 +80,7 @@ namespace Benchmark
               C[e * dim + o] += B[d * dim + o] * problem.contact[p].frame[e][d];
       B = C;
     };
-    const unsigned int column = problem.matrix.column(position);
+    const unsigned int column = problem.stiffness.blocks().column(position);
     if (contact_numbers[row] != numbers::invalid_unsigned_int)
       turn(contact_numbers[row], true);
     if (contact_numbers[column] != numbers::invalid_unsigned_int)
@@ -96,7 +96,7 @@ namespace Benchmark
   {
     along_axes = x;
     from_frames(along_axes);
-    problem.matrix.vmult(y.begin(), along_axes.begin());
+    problem.stiffness.vmult(y, along_axes);
     to_frames(y);
   }
 
@@ -107,7 +107,7 @@ namespace Benchmark
   RotatedProblem<dim>::residual(const VectorType &u) const
   {
     VectorType r(u);
-    problem.matrix.residual(r.begin(), problem.forces.begin(), u.begin());
+    problem.stiffness.residual(r, problem.forces, u);
     to_frames(r);
     return r;
   }

@@ -1,8 +1,8 @@
 // A contact problem by the installed library: a scene file, one mesh, one
 // solution.
 
-#include <common/discretization/discretization.h>
-#include <common/algorithms/coulomb_solver.h>
+#include <common/algorithms/contact_solver.h>
+#include <common/algorithms/initial_guess.h>
 
 #include <iostream>
 
@@ -17,11 +17,13 @@ main(int argc, char **argv)
   scene.make_coarse_mesh(*mesh);
   mesh->refine_global(4);
 
-  const Discretized<2> problem(scene, *mesh);
-  VectorType              u     = admissible_start(problem);
-  ContactState            state = ContactState(problem.contact().size(), problem.problem().has_friction());
-  CoulombSolver<2>        solver(
-    *problem.hierarchy, problem.problem(), parameters.solver);
+  Discretization<2> discretization(scene, *mesh);
+  discretization.set_up();
+  discretization.assemble(elasticity<2>(scene.material()));
+
+  VectorType         u = discretization.vector(), no_tractions(u);
+  ContactState       state = make_initial_guess(discretization, u, no_tractions);
+  ContactSolver<2>   solver(discretization, parameters.solver);
   const SolverReport report = solver.solve(u, state);
   std::cout << state.n_contact() << " nodes in contact, " << state.n_sticking()
             << " of them stick, "
