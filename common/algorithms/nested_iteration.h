@@ -97,6 +97,12 @@ namespace Friction
       return *triangulation;
     }
 
+    const parallel::distributed::Triangulation<dim> &
+    mesh() const
+    {
+      return *triangulation;
+    }
+
     const Discretization<dim> &
     discretization() const
     {

@@ -19,6 +19,10 @@
 
 #include <common/algorithms/nested_iteration.h>
 
+#include <common/algorithms/nested_iteration.h>
+
+#include <common/algorithms/nested_iteration.h>
+
 #include <cmath>
 #include <iostream>
 
@@ -125,47 +129,63 @@ namespace
 
 
   /**
-   * Solves on a mesh of which each cell is smaller than 1.2 times its distance
-   * from the lowest point, or than 1.2 a, and then refined globally: h/a in the
-   * contact zone, and around its rim, is 0.3 for no such refinement. The zone
-   * itself is not enough: cells that are coarse just outside make the force too
-   * large by half a percent.
+   * The body with a mesh of which each cell is smaller than 1.2 times its
+   * distance from the lowest point, or than 1.2 a: h/a in the contact zone, and
+   * around its rim, is 0.3. The zone itself is not enough: cells that are
+   * coarse just outside make the force too large by half a percent.
    */
-  Measured
-  solve(const double d, const unsigned int refinements)
+  class Body
   {
-    const Parameters parameters = half_ball(d);
-    const Scene<3>   scene(parameters);
-    auto             mesh = make_triangulation<3>();
-    scene.make_coarse_mesh(*mesh);
-    const double a = std::sqrt(R * d);
-    for (bool changed = true; changed;)
-      {
-        changed = false;
-        for (const auto &cell : mesh->active_cell_iterators())
-          {
-            double distance = R;
-            for (const unsigned int v : cell->vertex_indices())
-              distance = std::min(distance,
-                                  cell->vertex(v).distance(Point<3>(0, 0, -R)));
-            if (cell->diameter() > 1.2 * std::max(distance, a))
-              {
-                cell->set_refine_flag();
-                changed = true;
-              }
-          }
-        mesh->execute_coarsening_and_refinement();
-      }
-    mesh->refine_global(refinements);
+  public:
+    explicit Body(const double d)
+      : parameters(half_ball(d))
+      , scene(parameters)
+      , mesh(make_triangulation<3>())
+    {
+      scene.make_coarse_mesh(*mesh);
+      const double a = std::sqrt(R * d);
+      for (bool changed = true; changed;)
+        {
+          changed = false;
+          for (const auto &cell : mesh->active_cell_iterators())
+            {
+              double distance = R;
+              for (const unsigned int v : cell->vertex_indices())
+                distance = std::min(
+                  distance, cell->vertex(v).distance(Point<3>(0, 0, -R)));
+              if (cell->diameter() > 1.2 * std::max(distance, a))
+                {
+                  cell->set_refine_flag();
+                  changed = true;
+                }
+            }
+          mesh->execute_coarsening_and_refinement();
+        }
+    }
 
-    const Discretized<3> discretization(scene, *mesh);
-    VectorType              u = admissible_start(discretization);
-    ContactState            state(discretization.contact().size(), false);
-    ContactSolver<3>        solver(discretization, without_safeguards(parameters.solver));
-    const SolverReport report = solver.solve(u, state);
-    const Measured     result = measure(discretization.contact(), state, report);
-    return result;
-  }
+    void
+    refine()
+    {
+      mesh->refine_global(1);
+    }
+
+    Measured
+    solve() const
+    {
+      const Discretized<3> discretization(scene, *mesh);
+      VectorType           u = admissible_start(discretization);
+      ContactState         state(discretization.contact().size(), false);
+      ContactSolver<3>     solver(discretization,
+                              without_safeguards(parameters.solver));
+      const SolverReport   report = solver.solve(u, state);
+      return measure(discretization.contact(), state, report);
+    }
+
+  private:
+    const Parameters                                         parameters;
+    const Scene<3>                                           scene;
+    std::unique_ptr<parallel::distributed::Triangulation<3>> mesh;
+  };
 
 
 
@@ -197,8 +217,15 @@ main(int argc, char **argv)
   // order one; the force is its derivative by d.
   std::cout << "Three meshes, a/R = 0.2" << std::endl;
   std::vector<Measured> meshes;
-  for (const unsigned int refinements : {0, 1, 2})
-    meshes.push_back(solve(.04, refinements));
+  {
+    Body body(.04);
+    meshes.push_back(body.solve());
+    for (unsigned int refinement = 0; refinement < 2; ++refinement)
+      {
+        body.refine();
+        meshes.push_back(body.solve());
+      }
+  }
   const auto order = [&](const double Measured::*value) {
     return std::log2((meshes[1].*value - meshes[0].*value) /
                      (meshes[2].*value - meshes[1].*value));
@@ -211,7 +238,11 @@ main(int argc, char **argv)
   const std::vector<double> ds     = {.04, .01, .0025};
   std::vector<Measured>     bodies = {meshes[1]};
   for (unsigned int i = 1; i < 3; ++i)
-    bodies.push_back(solve(ds[i], 1));
+    {
+      Body body(ds[i]);
+      body.refine();
+      bodies.push_back(body.solve());
+    }
   for (const Measured &body : bodies)
     check_zone(body, .01);
 

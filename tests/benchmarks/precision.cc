@@ -306,7 +306,7 @@ namespace Benchmark
                 nest.mark_all();
               else
                 nest.mark(nest.estimate());
-              nest.refine();
+              nest.advance();
               solve(nest);
             }
           compare_with_reference(nest);

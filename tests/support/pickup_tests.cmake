@@ -12,11 +12,12 @@
 
 # Open MPI starts under root as well, and more processes than there are cores (one
 # word for Open MPI 5, one for earlier ones). All of them are on one machine, so that
-# it need not look for a network, and complain if there is none.
+# it need not look for a network, which may take a second, and complain if there is
+# none.
 set(FRICTION_MPI_ENVIRONMENT
   OMPI_ALLOW_RUN_AS_ROOT=1
   OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-  OMPI_MCA_btl=^tcp
+  OMPI_MCA_btl=^tcp,ofi
   OMPI_MCA_rmaps_base_oversubscribe=1
   PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe)
 
@@ -38,6 +39,11 @@ function(label_test name)
     TIMEOUT ${TEST_TIME_LIMIT})
   set_property(TEST ${name} APPEND PROPERTY ENVIRONMENT
     ${FRICTION_MPI_ENVIRONMENT})
+  # What takes long and one processor begins early, or it would have the other
+  # processors wait in the end.
+  if(NOT _test_LABEL STREQUAL "quick" AND _test_PROCESSES EQUAL 1)
+    set_tests_properties(${name} PROPERTIES COST 100)
+  endif()
 endfunction()
 
 # The programs of all quick tests.
