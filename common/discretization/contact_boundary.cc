@@ -1,6 +1,6 @@
 #include <common/discretization/contact_boundary.h>
 #include <common/parallel/collective_error.h>
-#include <common/scene/input_error.h>
+#include <common/parameters/wrong_number.h>
 
 #include <deal.II/base/quadrature_lib.h>
 

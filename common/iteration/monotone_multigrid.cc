@@ -10,11 +10,11 @@ namespace Friction
     Correction<dim>             &correction,
     StepControl<dim>            &step_control,
     const unsigned int           smoothing_steps)
-    : energy(functional)
-    , smoother(smoother)
-    , linearization(linearization)
-    , correction(correction)
-    , step_control(step_control)
+    : energy(&functional)
+    , smoother(&smoother)
+    , linearization(&linearization)
+    , correction(&correction)
+    , step_control(&step_control)
     , smoothing_steps(smoothing_steps)
     , r(problem().constraints.partitioner())
     , v(r)
@@ -26,7 +26,9 @@ namespace Friction
   MonotoneMultigrid<dim>
   MonotoneMultigrid<dim>::with(Linearization<dim> &other) const
   {
-    return {energy, smoother, other, correction, step_control, smoothing_steps};
+    MonotoneMultigrid result = *this;
+    result.linearization     = &other;
+    return result;
   }
 
 
@@ -35,8 +37,9 @@ namespace Friction
   MonotoneMultigrid<dim>
   MonotoneMultigrid<dim>::with(Correction<dim> &other) const
   {
-    return {
-      energy, smoother, linearization, other, step_control, smoothing_steps};
+    MonotoneMultigrid result = *this;
+    result.correction        = &other;
+    return result;
   }
 
 
@@ -45,8 +48,9 @@ namespace Friction
   MonotoneMultigrid<dim>
   MonotoneMultigrid<dim>::with(StepControl<dim> &other) const
   {
-    return {
-      energy, smoother, linearization, correction, other, smoothing_steps};
+    MonotoneMultigrid result = *this;
+    result.step_control      = &other;
+    return result;
   }
 
 
@@ -55,8 +59,8 @@ namespace Friction
   void
   MonotoneMultigrid<dim>::begin(Iterate &x)
   {
-    step_control.begin();
-    smoother.forward(x, smoothing_steps, /*trust first normal forces =*/true);
+    step_control->begin();
+    smoother->forward(x, smoothing_steps, /*trust first normal forces =*/true);
   }
 
 
@@ -65,15 +69,15 @@ namespace Friction
   double
   MonotoneMultigrid<dim>::iterate(Iterate &x)
   {
-    linearization.update(x);
-    updated_rows += correction.update(linearization, x);
-    linearization.linearize_residual(r, x);
-    correction.apply(v, r);
+    linearization->update(x);
+    updated_rows += correction->update(*linearization, x);
+    linearization->linearize_residual(r, x);
+    correction->apply(v, r);
     const double length =
-      step_control.advance(x, v, r, linearization.truncation());
+      step_control->advance(x, v, r, linearization->truncation());
 
-    smoother.backward(x, smoothing_steps);
-    smoother.forward(x, smoothing_steps);
+    smoother->backward(x, smoothing_steps);
+    smoother->forward(x, smoothing_steps);
     return length;
   }
 
@@ -83,7 +87,7 @@ namespace Friction
   std::size_t
   MonotoneMultigrid<dim>::memory_consumption() const
   {
-    return smoother.memory_consumption() + correction.memory_consumption();
+    return smoother->memory_consumption() + correction->memory_consumption();
   }
 
 

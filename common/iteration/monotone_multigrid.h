@@ -65,20 +65,20 @@ namespace Friction
     const TrescaFunctional<dim> &
     functional() const
     {
-      return energy;
+      return *energy;
     }
 
     const DiscreteProblem<dim> &
     problem() const
     {
-      return energy.discrete_problem();
+      return energy->discrete_problem();
     }
 
     /** The truncation of the last step, and its truncated residual. */
     const Truncation<dim> &
     truncation() const
     {
-      return linearization.truncation();
+      return linearization->truncation();
     }
 
     const VectorType &
@@ -98,12 +98,12 @@ namespace Friction
     std::size_t memory_consumption() const;
 
   private:
-    const TrescaFunctional<dim> &energy;
-    const MonotoneSmoother<dim> &smoother;
-    Linearization<dim>          &linearization;
-    Correction<dim>             &correction;
-    StepControl<dim>            &step_control;
-    const unsigned int           smoothing_steps;
+    const TrescaFunctional<dim> *energy;
+    const MonotoneSmoother<dim> *smoother;
+    Linearization<dim>          *linearization;
+    Correction<dim>             *correction;
+    StepControl<dim>            *step_control;
+    unsigned int                 smoothing_steps;
 
     VectorType  r, v;
     std::size_t updated_rows = 0;

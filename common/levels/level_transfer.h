@@ -2,6 +2,7 @@
 #define friction_levels_level_transfer_h
 
 #include <common/levels/level_hierarchy.h>
+#include <common/parallel/ghost_exchange.h>
 
 #include <deal.II/multigrid/mg_constrained_dofs.h>
 #include <deal.II/multigrid/mg_transfer_matrix_free.h>

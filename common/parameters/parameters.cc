@@ -1,6 +1,6 @@
 #include <common/parameters/parameter_entries.h>
 #include <common/parameters/parameters.h>
-#include <common/scene/parse_function.h>
+#include <common/parameters/parse_function.h>
 
 #include <deal.II/base/numbers.h>
 #include <deal.II/base/parameter_handler.h>

@@ -1,7 +1,7 @@
 #ifndef friction_parameters_parameters_h
 #define friction_parameters_parameters_h
 
-#include <common/scene/input_error.h>
+#include <common/parameters/wrong_number.h>
 #include <common/parameters/material.h>
 #include <common/parameters/solver_settings.h>
 

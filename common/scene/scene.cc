@@ -1,7 +1,7 @@
 #include <common/compatibility.h>
 #include <common/parallel/collective_error.h>
 #include <common/scene/geometries.h>
-#include <common/scene/parse_function.h>
+#include <common/parameters/parse_function.h>
 #include <common/scene/scene.h>
 
 #include <deal.II/base/geometry_info.h>

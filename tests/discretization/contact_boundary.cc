@@ -9,7 +9,7 @@
 // exactly as when the functions are condensed.
 
 #include <common/discretization/contact_boundary.h>
-#include <common/scene/input_error.h>
+#include <common/parameters/wrong_number.h>
 
 #include <deal.II/base/quadrature_lib.h>
 

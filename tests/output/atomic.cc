@@ -3,7 +3,7 @@
 
 #include <common/output/history.h>
 #include <common/output/run_directory.h>
-#include <common/scene/input_error.h>
+#include <common/parameters/wrong_number.h>
 #include <sys/resource.h>
 
 #include <deal.II/base/mpi.h>

@@ -1,7 +1,7 @@
-#ifndef friction_scene_parse_function_h
-#define friction_scene_parse_function_h
+#ifndef friction_parameters_parse_function_h
+#define friction_parameters_parse_function_h
 
-#include <common/scene/input_error.h>
+#include <common/parameters/wrong_number.h>
 #include <common/parameters/parameters.h>
 
 #include <deal.II/base/function_parser.h>

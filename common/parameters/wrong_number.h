@@ -1,5 +1,5 @@
-#ifndef friction_scene_input_error_h
-#define friction_scene_input_error_h
+#ifndef friction_parameters_wrong_number_h
+#define friction_parameters_wrong_number_h
 
 #include <common/input_error.h>
 
