@@ -43,6 +43,7 @@ namespace Friction
                             const std::string &version,
                             const MPI_Comm     communicator)
     : parameters(parameters)
+    , communicator(communicator)
     , directory(parameters.output.directory, communicator)
     , the_console(out,
                   parameters.output.times ? Console::Times::shown

@@ -102,6 +102,7 @@ namespace Friction
     static double fingerprint(const Triangulation &triangulation);
 
     const Parameters parameters;
+    const MPI_Comm   communicator;
 
     RunDirectory     directory;
     Console          the_console;
