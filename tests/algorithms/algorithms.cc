@@ -8,6 +8,7 @@
 // to the same solution.
 
 #include <common/algorithms/nested_iteration.h>
+#include <common/contact/contact_forces.h>
 #include <common/iteration/tresca_functional.h>
 
 #include <cstring>
@@ -131,7 +132,7 @@ namespace
     Random                 random(3);
     const RandomProblem<3> fixture(
       curved_parameters<3>(FrictionLaw::coulomb, .4), 3, .3, random);
-    const Discretization<3> &d = *fixture.discretization;
+    const Discretization<3> &d = fixture.discretization;
 
     SolverSettings standard;
     standard.inner_tolerance = 1e-10;
@@ -352,9 +353,9 @@ namespace
     // The opposite, so that the numbers above mean something.
     const auto friction = make({});
     friction->solve();
-    check(friction->state.has_friction() &&
-            friction->state.friction_memory() >=
-              friction->state.size() * (sizeof(double) + sizeof(char)),
+    check(friction->state().has_friction() &&
+            friction->state().friction_memory() >=
+              friction->state().size() * (sizeof(double) + sizeof(char)),
           "with friction something is allocated");
   }
 } // namespace

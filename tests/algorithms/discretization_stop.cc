@@ -52,21 +52,16 @@ namespace
         ContactState               state(0, false);
         n_tight_cycles += nest.solve_with(tight, u, state).cycles.size();
 
-        nest.report() = nest.solve_with(
-          stop.settings_for(n_dofs), nest.displacement(), nest.state());
+        VectorType         v;
+        ContactState       stopped(0, false);
+        const SolverReport report =
+          nest.solve_with(stop.settings_for(n_dofs), v, stopped);
+        nest.accept(v, stopped, report);
         converged = converged && nest.report().converged;
         n_cycles += nest.report().cycles.size();
         u -= nest.displacement();
         const double error = energy_norm<dim>(d.stiffness().blocks(), u);
-        nest.accept();
-        const ErrorEstimate estimate = estimate_contact_error(nest.scene(),
-                                                              d.mapping(),
-                                                              d.dof_handler(),
-                                                              d.hanging_nodes(),
-                                                              d.constraints(),
-                                                              d.contact(),
-                                                              nest.displacement(),
-                                                              nest.tractions());
+        const ErrorEstimate estimate = nest.estimate();
         stop.add_estimate(estimate.total, n_dofs);
         share = std::max(share, error / estimate.total);
         if (nest.level() > 0)

@@ -38,7 +38,7 @@ namespace
 
     const QGauss<2>                    quadrature(4);
     FEValues<2>                        fe_values(d.mapping(),
-                          d.fe,
+                          d.dof_handler().get_fe(),
                           quadrature,
                           update_gradients | update_quadrature_points |
                             update_JxW_values);
@@ -75,14 +75,7 @@ namespace
             0.05 * std::pow(std::max(node.point[0] - 1, 0.), power_of_pressure),
           2);
     errors.pressure = std::sqrt(errors.pressure);
-    errors.estimate = estimate_contact_error(iteration.scene(),
-                                             d.mapping(),
-                                             d.dof_handler(),
-                                             d.hanging_nodes(),
-                                             d.constraints(),
-                                             d.contact(),
-                                             iteration.displacement(),
-                                             iteration.tractions())
+    errors.estimate = iteration.estimate()
                         .total;
 
     check_below(

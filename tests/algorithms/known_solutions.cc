@@ -215,7 +215,7 @@ namespace
 
         const QGauss<2>                    quadrature(4);
         FEValues<2>                        fe_values(d.mapping(),
-                              d.fe,
+                              d.dof_handler().get_fe(),
                               quadrature,
                               update_gradients | update_quadrature_points |
                                 update_JxW_values);

@@ -47,6 +47,7 @@ namespace
       , parameters(parameters)
       , scene(parameters)
       , mesh(make_triangulation<dim>())
+      , discretization(scene, *mesh)
     {
       scene.make_coarse_mesh(*mesh);
       mesh->refine_global(refinements);
@@ -71,7 +72,8 @@ namespace
             }
           mesh->execute_coarsening_and_refinement();
         }
-      discretization = std::make_unique<Discretized<dim>>(scene, *mesh);
+      discretization.set_up();
+      discretization.assemble(elasticity<dim>(scene.material()));
 
       VectorType         u = admissible_start(discretization);
       ContactState       state(discretization.contact().size(), true);
@@ -138,7 +140,7 @@ namespace
     unsigned int
     n_hanging_at_contact(const ContactState &state, const bool sticks) const
     {
-      return Tests::n_hanging_at_contact<dim>(*discretization,
+      return Tests::n_hanging_at_contact<dim>(discretization,
                                               scene.contact_boundary_id(),
                                               [&](const unsigned int p) {
                                                 return state.in_contact(p) &&
@@ -150,8 +152,7 @@ namespace
     residual(const VectorType &u) const
     {
       VectorType r(u);
-      discretization.stiffness().blocks().residual(
-        r.begin(), discretization.loads().begin(), u.begin());
+      discretization.stiffness().residual(r, discretization.loads(), u);
       return r;
     }
 
@@ -159,7 +160,7 @@ namespace
     product(const VectorType &v) const
     {
       VectorType Av(v);
-      discretization.stiffness().blocks().vmult(Av.begin(), v.begin());
+      discretization.stiffness().vmult(Av, v);
       return Av;
     }
 
@@ -167,7 +168,7 @@ namespace
     const Parameters                                           parameters;
     const Scene<dim>                                           scene;
     std::unique_ptr<parallel::distributed::Triangulation<dim>> mesh;
-    std::unique_ptr<Discretization<dim>>                       discretization;
+    Discretization<dim>                                        discretization;
     bool                converged = false;
     double              length    = 0;
     std::vector<double> normal_forces;
@@ -212,7 +213,7 @@ namespace
                const CoarseCorrection correction,
                const Cycle            cycle)
   {
-    const Discretization<dim>  &d       = *fixture.discretization;
+    const Discretization<dim>  &d       = fixture.discretization;
     const DiscreteProblem<dim>  problem = fixture.problem();
     const TrescaFunctional<dim> functional(problem);
     const MonotoneSmoother<dim> smoother(problem);
@@ -386,7 +387,7 @@ namespace
   void
   whole_iteration(TrescaProblem<dim> &fixture)
   {
-    const Discretization<dim>  &d       = *fixture.discretization;
+    const Discretization<dim>  &d       = fixture.discretization;
     const DiscreteProblem<dim>  problem = fixture.problem();
     const TrescaFunctional<dim> functional(problem);
 
@@ -466,7 +467,7 @@ namespace
   void
   line_search(TrescaProblem<dim> &fixture)
   {
-    const Discretization<dim>  &d       = *fixture.discretization;
+    const Discretization<dim>  &d       = fixture.discretization;
     const DiscreteProblem<dim>  problem = fixture.problem();
     const TrescaFunctional<dim> functional(problem);
     ContactState                state = fixture.initial_state();
@@ -503,7 +504,7 @@ namespace
           }
         const double largest = 2.;
         const double length  = functional.minimize_along(
-          v, u, state, r * v, v * fixture.product(v), largest);
+          v, Iterate(u, state), r * v, v * fixture.product(v), largest);
         n_zero += (length == 0);
         n_inside += (length > 0 && length < largest);
         n_largest += (length == largest);
@@ -545,8 +546,9 @@ namespace
   void
   projection(TrescaProblem<dim> &fixture)
   {
-    const Discretization<dim>  &d = *fixture.discretization;
-    const TrescaFunctional<dim> functional(fixture.problem());
+    const Discretization<dim>  &d = fixture.discretization;
+    const DiscreteProblem<dim>  problem = fixture.problem();
+    const TrescaFunctional<dim> functional(problem);
 
     double penetration = -1e300, penetration_of_length = -1e300, changed = 0;
     bool   counted = true, longest = true, at_least_one = true;
@@ -622,7 +624,7 @@ namespace
   void
   recombination(TrescaProblem<dim> &fixture)
   {
-    const Discretization<dim> &d       = *fixture.discretization;
+    const Discretization<dim> &d       = fixture.discretization;
     const DiscreteProblem<dim> problem = fixture.problem();
     VectorType                 u       = fixture.random_start();
     ContactState               state   = fixture.initial_state();
@@ -760,7 +762,7 @@ namespace
           "more than one step neither helps nor harms");
 
     // A step that has moved a node which now is held does not take part.
-    Recombination<dim> one_step(1);
+    Recombination<dim> one_step(problem, 1);
     VectorType         x(b);
     x = 0.;
     one_step.add_iterate(x, residual(x));

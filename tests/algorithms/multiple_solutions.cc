@@ -20,6 +20,7 @@
 #include <iostream>
 
 #include <tests/support/check.h>
+#include <tests/support/discretized.h>
 
 #include "../support/random_problem.h"
 

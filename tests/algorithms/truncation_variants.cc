@@ -51,7 +51,7 @@ main(int argc, char **argv)
             VectorType         u;
             ContactState       state(0, false);
             const SolverReport report =
-              iteration.solve_with(settings, u, state);
+              iteration.solve_with(without_safeguards(settings), u, state);
             cycles[{truncation, correction}].push_back(
               report.converged ? report.cycles.size() : limit);
           }

@@ -165,14 +165,14 @@ namespace
     Random                   random(3);
     const RandomProblem<dim> problem(
       block_parameters<dim>(FrictionLaw::none, 0.), n_rounds, density, random);
-    const auto &disc        = *problem.discretization;
+    const auto &disc        = problem.discretization;
     const auto &constraints = problem.constraints();
 
     VectorType integrals(disc.dof_handler().locally_owned_dofs(), MPI_COMM_WORLD);
     const QGauss<dim - 1> quadrature(3);
     FEFaceValues<dim>     face_values(
-      disc.mapping(), disc.fe, quadrature, update_values | update_JxW_values);
-    Vector<double>                       local(disc.fe.n_dofs_per_cell());
+      disc.mapping(), disc.dof_handler().get_fe(), quadrature, update_values | update_JxW_values);
+    Vector<double>                       local(disc.dof_handler().get_fe().n_dofs_per_cell());
     std::vector<types::global_dof_index> indices(local.size());
     std::vector<char> hangs_at_contact(constraints.n_nodes(), 0);
     for (const auto &cell : disc.dof_handler().active_cell_iterators())

@@ -11,6 +11,7 @@
 #include <iostream>
 
 #include <tests/support/check.h>
+#include <tests/support/discretized.h>
 
 #include "../support/random_problem.h"
 

@@ -71,6 +71,7 @@ namespace
             const unsigned int seed)
       : scene(parameters)
       , mesh(make_triangulation<dim>(communicator))
+      , discretization(scene, *mesh)
     {
       scene.make_coarse_mesh(*mesh);
       for (unsigned int round = 0; round < (dim == 2 ? 4 : 2); ++round)
@@ -86,15 +87,16 @@ namespace
               }
           mesh->execute_coarsening_and_refinement();
         }
-      discretization  = std::make_unique<Discretized<dim>>(scene, *mesh);
+      discretization.set_up();
+      discretization.assemble(elasticity<dim>(scene.material()));
       level_hierarchy = std::make_unique<LevelHierarchy<dim>>(
-        discretization->dof_handler(),
-        discretization->constraints(),
-        discretization->stiffness().blocks());
+        discretization.dof_handler(),
+        discretization.constraints(),
+        discretization.stiffness().blocks());
 
       // Where nodes are: on the leaf mesh those that are known, on the levels
       // all there are.
-      const auto &d = *discretization;
+      const auto &d = discretization;
       points.resize(d.constraints().n_nodes());
       for (const auto &cell : d.dof_handler().active_cell_iterators())
         if (!cell->is_artificial())
@@ -171,7 +173,7 @@ namespace
 
     const Scene<dim>                                           scene;
     std::unique_ptr<parallel::distributed::Triangulation<dim>> mesh;
-    std::unique_ptr<Discretization<dim>>                       discretization;
+    Discretization<dim>                                        discretization;
     std::unique_ptr<LevelHierarchy<dim>>                       level_hierarchy;
     std::vector<Point<dim>>                                    points;
     std::map<Key<dim>, unsigned int>                           leaf_nodes;
@@ -195,7 +197,7 @@ namespace
   void
   compare_discretizations(const Problem<dim> &all, const Problem<dim> &alone)
   {
-    const auto &d = *all.discretization, &e = *alone.discretization;
+    const auto &d = all.discretization, &e = alone.discretization;
     const auto &constraints = d.constraints();
 
     const double n_contact =
@@ -306,7 +308,7 @@ namespace
                          const Problem<dim> &alone,
                          const unsigned int  seed)
   {
-    const auto        &d = *all.discretization, &e = *alone.discretization;
+    const auto        &d = all.discretization, &e = alone.discretization;
     LevelMatrices<dim> matrices(d.stiffness().blocks(), all.hierarchy(), d.constraints()),
       alone_matrices(e.stiffness().blocks(), alone.hierarchy(), e.constraints());
     report(largest_difference(matrices, all, alone_matrices, alone),
@@ -343,7 +345,7 @@ namespace
   void
   check_cycle(const Problem<dim> &all, const unsigned int seed)
   {
-    const auto      &d = *all.discretization;
+    const auto      &d = all.discretization;
     Levels<dim>              levels(d.dof_handler(), d.problem());
     TruncatedCorrection<dim> cycle(levels, Cycle::V, 2);
     const Truncation<dim>    truncation = all.truncation(seed, 1.);
@@ -381,7 +383,7 @@ namespace
                const Problem<dim> &alone,
                const unsigned int  seed)
   {
-    const auto &d = *all.discretization, &e = *alone.discretization;
+    const auto &d = all.discretization, &e = alone.discretization;
     const TrescaFunctional<dim> functional(d.problem()),
       alone_functional(e.problem());
     MonotoneSmoother<dim> smoother(d.problem());
@@ -507,7 +509,7 @@ namespace
   void
   check_monotonicity(const Problem<dim> &all, const unsigned int seed)
   {
-    const auto                &d       = *all.discretization;
+    const auto                &d       = all.discretization;
     DiscreteProblem<dim>       problem = d.problem();
     problem.friction_law               = FrictionLaw::tresca;
     for (const auto correction :
@@ -543,7 +545,7 @@ namespace
   void
   check_solution(const Problem<dim> &all, const Problem<dim> &alone)
   {
-    const auto &d = *all.discretization, &e = *alone.discretization;
+    const auto &d = all.discretization, &e = alone.discretization;
     for (const auto correction :
          {CoarseCorrection::truncated, CoarseCorrection::monotone})
       {
@@ -601,7 +603,7 @@ namespace
     if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
       {
         unsigned int n_hanging = 0;
-        const auto  &e         = *alone.discretization;
+        const auto  &e         = alone.discretization;
         for (unsigned int i = 0; i < e.constraints().n_nodes(); ++i)
           n_hanging += e.constraints().is_hanging(i);
         std::cout << dim << "D, " << alone.hierarchy().n_levels() << " levels, "

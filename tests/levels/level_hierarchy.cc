@@ -129,7 +129,7 @@ namespace
   void
   test_nodes(const RandomProblem<dim> &problem)
   {
-    const auto &disc        = *problem.discretization;
+    const auto &disc        = problem.discretization;
     const auto &constraints = problem.constraints();
     const auto &hierarchy   = problem.hierarchy();
     const auto  n_leaf      = constraints.n_nodes();

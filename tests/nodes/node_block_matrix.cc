@@ -254,7 +254,7 @@ namespace
     Random                   random(3);
     const RandomProblem<dim> problem(
       block_parameters<dim>(FrictionLaw::none, 0.), 3, .3, random);
-    const auto        &disc        = *problem.discretization;
+    const auto        &disc        = problem.discretization;
     const auto        &constraints = problem.constraints();
     const unsigned int n_dofs      = disc.dof_handler().n_dofs();
     std::cout << dim << "D, leaf matrix, " << constraints.n_nodes()
@@ -263,10 +263,10 @@ namespace
     using Entry = Eigen::Triplet<double>;
     std::vector<Entry>                   entries, extension;
     FEValues<dim>                        fe_values(disc.mapping(),
-                            disc.fe,
+                            disc.dof_handler().get_fe(),
                             QGauss<dim>(2),
                             update_gradients | update_JxW_values);
-    std::vector<types::global_dof_index> indices(disc.fe.n_dofs_per_cell());
+    std::vector<types::global_dof_index> indices(disc.dof_handler().get_fe().n_dofs_per_cell());
     const FEValuesExtractors::Vector     displacement(0);
     const double lambda = problem.scene.material().lambda();
     const double mu     = problem.scene.material().mu();

@@ -355,6 +355,7 @@ namespace Benchmark
   {
     VectorType residual(u);
     problem.stiffness.residual(residual, problem.forces, u);
+    Result result;
     result.certificate =
       make_certificate(problem, u, residual, state).largest();
     result.energy = TrescaFunctional<dim>(problem).energy(u, residual, state);

@@ -153,7 +153,7 @@ namespace Benchmark
   std::vector<unsigned int>
   StiffnessFactor<dim>::order_other_nodes() const
   {
-    const NodeBlockMatrix<dim> &A = rotated.problem.matrix;
+    const NodeBlockMatrix<dim> &A = rotated.problem.stiffness.blocks();
     std::vector<unsigned int> number(A.n_rows(), numbers::invalid_unsigned_int);
     std::vector<char>         is_last(A.n_rows(), 0);
     for (const unsigned int p : last)
@@ -218,7 +218,7 @@ namespace Benchmark
   void
   StiffnessFactor<dim>::factorize()
   {
-    const NodeBlockMatrix<dim> &A    = rotated.problem.matrix;
+    const NodeBlockMatrix<dim> &A    = rotated.problem.stiffness.blocks();
     constexpr std::size_t       none = -1;
     std::vector<std::size_t>    row_of(rotated.n_dofs(), none);
     for (std::size_t i = 0; i < order.size(); ++i)
