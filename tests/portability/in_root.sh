@@ -49,7 +49,7 @@ if [ -n "$tag" ]; then
   {
     apt-get update &&
       apt-get install -y --no-install-recommends cmake ninja-build g++ python3 \
-        libdeal.ii-dev libeigen3-dev numdiff
+        mold libdeal.ii-dev libeigen3-dev numdiff
   } >packages.log 2>&1
   cmake -S /dealii -B /dealii-build -G Ninja -DDEAL_II_WITH_MPI=ON \
     -DDEAL_II_WITH_P4EST=ON -DDEAL_II_WITH_TRILINOS=ON -DDEAL_II_WITH_HDF5=ON \
