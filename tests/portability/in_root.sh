@@ -59,6 +59,7 @@ if [ -n "$tag" ]; then
   configured=no
   cmake -S . -B build/headers -G Ninja -DCMAKE_BUILD_TYPE=Debug \
     -DDEAL_II_DIR=/dealii-build -DFRICTION_PRECOMPILED_HEADERS=OFF \
+    -DFRICTION_UNITY_BUILD=OFF \
     >configure.log 2>&1 && configured=yes
   # Not the one that the system has as well.
   grep -q '^deal.II_DIR:PATH=/dealii-build' build/headers/CMakeCache.txt || exit 1
