@@ -37,9 +37,15 @@ namespace Friction
       std::sort(numbers.begin(), numbers.end());
       numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
     }
+  } // namespace
 
 
 
+  // Not in the namespace without a name, or a compiler that is given several
+  // files as one warns of a member function's lambda that captures such an
+  // object.
+  namespace internal
+  {
     // The columns of one row, collected with the help of a marker, so that each
     // appears once.
     class ColumnCollector
@@ -70,7 +76,7 @@ namespace Friction
       unsigned int              row = 0;
       std::vector<unsigned int> last_row;
     };
-  } // namespace
+  } // namespace internal
 
 
 
@@ -319,10 +325,10 @@ namespace Friction
         return;
       }
 
-    auto               owned_pattern    = std::make_shared<NodePattern>();
-    auto               outgoing_pattern = std::make_shared<NodePattern>();
-    ColumnCollector    collector;
-    const unsigned int n_rows = level.n_local_nodes();
+    auto owned_pattern    = std::make_shared<NodePattern>();
+    auto outgoing_pattern = std::make_shared<NodePattern>();
+    internal::ColumnCollector collector;
+    const unsigned int        n_rows = level.n_local_nodes();
     owned_pattern->starts.reserve(n_owned + 1);
     for (unsigned int row = 0; row < n_rows; ++row)
       {

@@ -1,7 +1,8 @@
-// An imported mesh of 65 536 quadrilaterals, which is the coarsest mesh and the
-// leaf mesh at once: there are no levels, and each correction is one solution
-// by algebraic multigrid. The same mesh obtained by refining 16 cells six times
-// has the same discrete solution, and the geometric levels to find it with.
+// An imported mesh of more than 10^5 quadrilaterals, which is the coarsest mesh
+// and the leaf mesh at once: there are no levels, and each correction is one
+// solution by algebraic multigrid. The same mesh obtained by refining 25 cells
+// six times has the same discrete solution, and the geometric levels to find
+// it with.
 
 #include <common/algorithms/nested_iteration.h>
 
@@ -60,7 +61,7 @@ main(int argc, char **argv)
   };
 
   NestedIteration<2> refined(parameters(
-    {"Scene/Subdivisions=4, 4", "Refinement/Initial refinements=6"}));
+    {"Scene/Subdivisions=5, 5", "Refinement/Initial refinements=6"}));
   refined.begin();
   write_mesh(refined.mesh(), "large_coarse_mesh.msh");
   refined.solve();

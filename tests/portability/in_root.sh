@@ -49,7 +49,7 @@ if [ -n "$tag" ]; then
   {
     apt-get update &&
       apt-get install -y --no-install-recommends cmake ninja-build g++ python3 \
-        libdeal.ii-dev libeigen3-dev numdiff
+        mold libdeal.ii-dev libeigen3-dev numdiff
   } >packages.log 2>&1
   cmake -S /dealii -B /dealii-build -G Ninja -DDEAL_II_WITH_MPI=ON \
     -DDEAL_II_WITH_P4EST=ON -DDEAL_II_WITH_TRILINOS=ON -DDEAL_II_WITH_HDF5=ON \
@@ -59,6 +59,7 @@ if [ -n "$tag" ]; then
   configured=no
   cmake -S . -B build/headers -G Ninja -DCMAKE_BUILD_TYPE=Debug \
     -DDEAL_II_DIR=/dealii-build -DFRICTION_PRECOMPILED_HEADERS=OFF \
+    -DFRICTION_UNITY_BUILD=OFF \
     >configure.log 2>&1 && configured=yes
   # Not the one that the system has as well.
   grep -q '^deal.II_DIR:PATH=/dealii-build' build/headers/CMakeCache.txt || exit 1
