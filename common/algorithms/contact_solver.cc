@@ -32,7 +32,7 @@ namespace Friction
     if (settings.coarse_correction == CoarseCorrection::monotone)
       return std::make_unique<FullStep<dim>>(functional);
     return std::make_unique<LineSearch<dim>>(functional,
-                                             settings.maximum_damping,
+                                             settings.maximum_step_length,
                                              settings.recombined_steps);
   }
 

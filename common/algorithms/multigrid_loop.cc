@@ -136,7 +136,7 @@ namespace Friction
         last_residual = x.residual;
         CycleInfo info = {};
         info.energy    = sums[energy];
-        info.damping   = iteration.iterate(x);
+        info.step_length = iteration.iterate(x);
         result.cycles.push_back(info);
 
         look_at_iterate();

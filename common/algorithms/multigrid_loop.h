@@ -18,7 +18,7 @@ namespace Friction
   {
     double increment; ///< energy norm of the increment, relative to u's
     double energy;    ///< of the smoothed iterate
-    double damping;   ///< step length of the coarse correction
+    double step_length; ///< step length of the coarse correction
     double truncated; ///< components held at all contact nodes
     double residual;  ///< Euclidean norm of the truncated residual
   };

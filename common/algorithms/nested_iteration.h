@@ -31,7 +31,7 @@ namespace Friction
     /** Makes the first mesh and discretises. The initial guess is zero. */
     void begin();
 
-    /** Discretises on the mesh as it is, which somebody else has made; it is
+    /** Discretises on the mesh as it is, which the caller has made; it is
      * that of level @p level. The initial guess is zero; see guess(). */
     void begin_on_level(const unsigned int level);
 

@@ -106,10 +106,10 @@ namespace Friction
     , iteration(iteration)
     , settings(settings)
     , line_search(iteration.functional(),
-                  settings.maximum_damping,
+                  settings.maximum_step_length,
                   settings.recombined_steps)
     , short_steps(iteration.functional(),
-                  std::min(.5, settings.maximum_damping),
+                  std::min(.5, settings.maximum_step_length),
                   0)
   {}
 
@@ -218,7 +218,7 @@ namespace Friction
         if (!report.converged && slow_corrections)
           {
             LineSearch<dim> whole_steps(iteration.functional(),
-                                        std::min(1., settings.maximum_damping),
+                                        std::min(1., settings.maximum_step_length),
                                         0);
             MonotoneMultigrid<dim> without_levels =
               cautious.with(algebraic_correction()).with(whole_steps);

@@ -92,7 +92,7 @@ namespace Friction
     VectorType normals(constraints.partitioner());
     VectorType measures(constraints.partitioner());
 
-    // Where the vertices are, also those of faces that are somebody else's.
+    // Where the vertices are, also those of faces of other processes.
     std::map<unsigned int, Point<dim>> points;
 
     const FE_Q<dim>       scalar_element(1);

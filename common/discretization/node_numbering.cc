@@ -114,7 +114,7 @@ namespace Friction
     new_numbers(const IndexSet                             &owned,
                 const std::vector<types::global_dof_index> &vertex_dofs)
     {
-      // Cells that are partly somebody else's repeat their first owned node in
+      // Cells with nodes of other processes repeat their first owned node in
       // place of the others. Their owned nodes are those at an interface to
       // other processes, and come first.
       const unsigned int nodes_per_cell = 1u << dim;

@@ -78,7 +78,7 @@ namespace Friction
   struct ErrorEstimate
   {
     /// $\eta_K$, one per active cell; 0 on cells of other processes, and where
-    /// it is nothing but rounding, so that nobody refines because of that.
+    /// it is nothing but rounding, so that no cell is refined because of it.
     dealii::Vector<float> cell_errors;
 
     /// $\left(\sum_K\eta_K^2\right)^{1/2}$ over all processes.

@@ -58,7 +58,7 @@ namespace Friction
     const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
     const Truncation<dim> &truncation = linearization.truncation();
     bool                   changed    = !is_filled;
-    for (const unsigned int node : truncation.special_nodes())
+    for (const unsigned int node : truncation.changed_nodes())
       changed = changed || !current.agrees(truncation, node);
     if (!true_on_any_process(changed, problem.communicator()))
       return 0;
@@ -92,7 +92,7 @@ namespace Friction
              ++e)
           {
             const unsigned int j = leaf_matrix.column(e);
-            NodeBlock<dim> block = current.sandwich(i, leaf_matrix.block(e), j);
+            NodeBlock<dim> block = current.truncated_block(i, leaf_matrix.block(e), j);
             if (i == j)
               for (unsigned int c = 0; c < dim; ++c)
                 for (unsigned int r = 0; r < dim; ++r)

@@ -20,7 +20,7 @@ namespace Friction
    * 5. projection and line search, one of the kinds of StepControl.
    *
    * The parts belong to the caller, and may be parts of several iterations.
-   * Whoever wants another iteration exchanges one of them, see with().
+   * For another iteration, exchange one of them by with().
    *
    * With given normal forces (Tresca) the iterates stay admissible and the
    * energy never increases. The exception is MonotoneCorrection in three

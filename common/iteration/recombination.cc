@@ -82,7 +82,7 @@ namespace Friction
       deviations[0] = std::max(deviations[0],
                                1e-13 * std::abs(last_iterate.local_element(i)));
     for (unsigned int i = 0; i < steps.size(); ++i)
-      for (const unsigned int node : truncation.special_nodes())
+      for (const unsigned int node : truncation.changed_nodes())
         if (dim * node < n_dofs)
           {
             const double        *s = steps[i].begin() + dim * node;
@@ -107,7 +107,7 @@ namespace Friction
     // that of contact nodes only.
     const auto friction = [&](const VectorType &a, const VectorType &b) {
       double sum = 0;
-      for (const unsigned int node : truncation.special_nodes())
+      for (const unsigned int node : truncation.changed_nodes())
         if (dim * node < n_dofs)
           {
             const NodeValue<dim> image = times<dim>(

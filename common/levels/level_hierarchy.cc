@@ -9,7 +9,8 @@
 namespace Friction
 {
   // Numbers of level nodes are global ones here. One is added to them, so that
-  // zero means none, and the maximum over processes is that of whoever knows.
+  // zero means none, and the maximum over processes is that of the
+  // processes that know.
   template <int dim>
   struct LevelHierarchy<dim>::LeafInformation
   {
@@ -155,7 +156,7 @@ namespace Friction
 
 
 
-  // Whoever owns a leaf node knows all active cells around it. The number of
+  // The owner of a leaf node knows all active cells around it. The number of
   // its level node is known to the owner of an active cell of that level; since
   // cells of one level are all refined at a vertex or none is, the vertex
   // belongs to the next coarser level if it is the corner of the parent.

@@ -20,7 +20,7 @@ namespace Friction
    * The leaf mesh with its hanging nodes is one space, the level meshes are
    * others; a node of one is the same vertex as a node of the other. For each
    * leaf node, @p finest_level is the finest level that has it as a node,
-   * called $f(p)$ below: that is where its residual enters the levels and where
+   * called $\ell(p)$ below: that is where its residual enters the levels and where
    * its correction is read off.
    *
    * The leaf space has its own smoother, the leading relaxation. Correction
@@ -29,8 +29,8 @@ namespace Friction
    *
    * With several processes a level has its own distribution, that of deal.II's
    * level degrees of freedom: a refined cell belongs to the process that owns
-   * its first child. So the same vertex may be somebody else's on the leaf mesh
-   * and on a level, and a node's parents may be, too. What a process needs of
+   * its first child. So the same vertex may belong to different processes on
+   * the leaf mesh and on a level, and a node's parents may be, too. What a process needs of
    * others it numbers as ghosts: parents of its nodes, nodes of its leaf nodes,
    * and nodes that the rows of its own nodes couple to. Which these are depends
    * on the graph of the matrices, which is therefore found here.
@@ -50,7 +50,7 @@ namespace Friction
         unsigned int leaf, node;
       };
 
-      /** Rows of a matrix that somebody else computes a part of. */
+      /** Rows of a matrix of which another process computes a part. */
       struct IncomingRow
       {
         unsigned int              row;
@@ -239,7 +239,7 @@ namespace Friction
       return levels[k];
     }
 
-    /** The finest level $f$ that a leaf node is a node of. */
+    /** The finest level $\ell$ that a leaf node is a node of. */
     unsigned int
     finest_level(const unsigned int leaf_node) const
     {

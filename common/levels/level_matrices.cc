@@ -208,9 +208,9 @@ namespace Friction
         std::fill_n(B.block(e), dim * dim, 0.);
       }
 
-    const auto sandwich =
+    const auto truncated_block =
       [&](const unsigned int i, const unsigned int j, const std::size_t e) {
-        NodeBlock<dim> block = truncation.sandwich(i, leaf_matrix.block(e), j);
+        NodeBlock<dim> block = truncation.truncated_block(i, leaf_matrix.block(e), j);
         if (i == j)
           for (unsigned int d = 0; d < dim * dim; ++d)
             block[d] += truncation.curvature(i)[d];
@@ -237,7 +237,7 @@ namespace Friction
             }
           else
             {
-              const NodeBlock<dim> block = sandwich(leaf, j, e);
+              const NodeBlock<dim> block = truncated_block(leaf, j, e);
               for (unsigned int d = 0; d < dim * dim; ++d)
                 target[d] += block[d];
             }
@@ -286,7 +286,7 @@ namespace Friction
                   if (truncation.is_identity(i) && truncation.is_identity(j))
                     add(child->weight, column, leaf_matrix.block(e));
                   else
-                    add(child->weight, column, sandwich(i, j, e).data());
+                    add(child->weight, column, truncated_block(i, j, e).data());
                 }
             }
 
@@ -373,7 +373,7 @@ namespace Friction
     for (const Truncation<dim> *special :
          std::initializer_list<const Truncation<dim> *>{&new_truncation,
                                                         &truncation})
-      for (const unsigned int node : special->special_nodes())
+      for (const unsigned int node : special->changed_nodes())
         if (!truncation.agrees(new_truncation, node))
           changed_nodes.push_back(node);
     if (!true_on_any_process(!changed_nodes.empty(),

@@ -15,7 +15,7 @@ namespace Friction
    * @f[ B_k = M_k^T\, T (A + \omega'') T\, M_k, @f]
    * where $M_k$ prolongs from level $k$ to the leaf mesh. They are built
    * without that global product, from the blocks of the leaf matrix: the block
-   * that couples leaf nodes $i,j$ belongs to level $\min(f(i),f(j))$, the
+   * that couples leaf nodes $i,j$ belongs to level $\min(\ell(i),\ell(j))$, the
    * finest one that has both, and from there upwards
    * @f[ B_k = \text{own blocks} + P_{k+1}^T B_{k+1} P_{k+1}. @f]
    * Truncation enters the own blocks only, never $P$: a node that several

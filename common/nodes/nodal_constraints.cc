@@ -56,7 +56,8 @@ namespace Friction
 
 
 
-  // The owner of a node knows all about it; whoever has it as a ghost may not.
+  // The owner of a node knows all about it; processes that have it as a
+  // ghost may not.
   template <int dim>
   void
   NodalConstraints<dim>::update_ghosts()

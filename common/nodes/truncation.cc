@@ -64,7 +64,7 @@ namespace Friction
 
   template <int dim>
   NodeBlock<dim>
-  Truncation<dim>::sandwich(const unsigned int i,
+  Truncation<dim>::truncated_block(const unsigned int i,
                             const double      *block,
                             const unsigned int j) const
   {

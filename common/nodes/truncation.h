@@ -59,8 +59,8 @@ namespace Friction
     /** v := T v at all owned nodes. */
     void apply(double *v) const;
 
-    /** The sandwich $T_i A_{ij} T_j$ of a leaf block. */
-    NodeBlock<dim> sandwich(const unsigned int i,
+    /** The truncated block $T_i A_{ij} T_j$ of a leaf block. */
+    NodeBlock<dim> truncated_block(const unsigned int i,
                             const double      *block,
                             const unsigned int j) const;
 
@@ -70,7 +70,7 @@ namespace Friction
     /** The nodes, ghosts included, that were ever given a subspace other than
      * everything. */
     const std::vector<unsigned int> &
-    special_nodes() const
+    changed_nodes() const
     {
       return specials;
     }

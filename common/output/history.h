@@ -92,7 +92,7 @@ namespace Friction
     unsigned int level     = 0;
     double       increment = 0.;
     double       energy    = 0.;
-    double       damping   = 0.;
+    double       step_length = 0.;
 
     /// Number of degrees of freedom the coarse correction leaves out.
     unsigned int truncated = 0;
@@ -102,7 +102,7 @@ namespace Friction
     void
     serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &level &increment &energy &damping &truncated &residual;
+      archive &level &increment &energy &step_length &truncated &residual;
     }
   };
 

@@ -127,7 +127,7 @@ namespace Friction
         row.level     = level;
         row.increment = info.increment;
         row.energy    = info.energy;
-        row.damping   = info.damping;
+        row.step_length = info.step_length;
         row.truncated = info.truncated;
         row.residual  = info.residual;
         records.cycles.push_back(row);

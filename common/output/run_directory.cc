@@ -56,7 +56,7 @@ namespace Friction
         renamed = true;
       }
 
-      // Somebody else renames it, or removes it.
+      // Another process renames it, or removes it.
       void
       leave_alone()
       {

@@ -12,8 +12,8 @@ namespace Friction
 {
   /**
    * Writes a file beside its final place and renames it when it is complete.
-   * Renaming within a directory is atomic: whoever looks at the final name
-   * finds the previous file or the new one, never half of either, also if the
+   * Renaming within a directory is atomic: a program that opens the final
+   * name finds the previous file or the new one, never half of either, also if the
    * run is killed in between or the disk is full.
    *
    * @p write_to gets the temporary name, in the same directory as
@@ -46,7 +46,7 @@ namespace Friction
    * The same for one file that all processes write together: @p write_to is
    * called by all of them with the same temporary name, the first one renames.
    * That the disk is full is asked for before, and is an InputError on all of
-   * them. What nobody can know before, a quota for example, is found out in the
+   * them. What cannot be known before, a quota for example, is found out in the
    * middle of collective operations and ends all processes.
    *
    * @param size  in bytes, about, of the whole file.

@@ -23,8 +23,8 @@ namespace Friction
                     const std::optional<std::string> &sentence);
 
   /**
-   * What one process meets in the middle of a collective operation of somebody
-   * else, an MPI file for example, cannot be agreed on, because the others wait
+   * What one process meets in the middle of a collective operation of another
+   * library, an MPI file for example, cannot be agreed on, because the others wait
    * there. Prints the sentence and ends all processes, with the exit status of
    * bad input. With one process an InputError is thrown.
    */

@@ -102,8 +102,8 @@ namespace Friction
 
   /**
    * Local numbers of nodes: those of the process come first, and then ghosts,
-   * nodes of others of which it holds a copy, in the order in which somebody
-   * asked for them.
+   * nodes of others of which it holds a copy, in the order in which they
+   * were asked for.
    */
   class NodeNumbering
   {

@@ -383,7 +383,7 @@ namespace Friction
        steps,
        "Give up after this many outer iterations on a level."},
       {"Solver",
-       "Maximum damping",
+       "Maximum step length",
        "2",
        positive,
        "Largest step length of the line search."},

@@ -44,7 +44,7 @@ namespace Friction
       std::string text = pattern.description(Patterns::PatternBase::Text);
       if (text.find("1e-300") != text.npos)
         return "a positive number";
-      // The descriptions begin sentences and name limits that nobody meets.
+      // The descriptions begin sentences and name limits that no value meets.
       text[0]            = std::tolower(text[0]);
       const auto replace = [&](const std::string &from, const std::string &to) {
         const auto position = text.find(from);
@@ -498,7 +498,7 @@ namespace Friction
   Expressions::evaluate(const std::string &expression,
                         const std::string &where) const
   {
-    // There is no coordinate to depend on: nobody writes this one.
+    // There is no coordinate to depend on: no scene file has this name.
     const double value =
       parse_function<1>({expression}, *this, where, "no_coordinate")
         ->value(Point<1>());
@@ -745,7 +745,7 @@ namespace Friction
       solver.maximum_cycles = values.integer("Solver/Maximum cycles");
       solver.maximum_outer_iterations =
         values.integer("Solver/Maximum outer iterations");
-      solver.maximum_damping  = values.number("Solver/Maximum damping");
+      solver.maximum_step_length  = values.number("Solver/Maximum step length");
       solver.recombined_steps = values.integer("Solver/Recombined steps");
       solver.outer_damping    = values.number("Solver/Outer damping");
       solver.mixed_outer_iterations =

@@ -104,7 +104,7 @@ namespace Friction
     unsigned int maximum_outer_iterations = 50;
 
     /// Largest step length in the line search after a coarse correction.
-    double maximum_damping = 2.;
+    double maximum_step_length = 2.;
 
     /// Number of previous steps that a truncated coarse correction is
     /// recombined with; zero for none.

@@ -265,7 +265,7 @@ namespace Friction
             pinned.push_back({point, d, value[d]});
       }
 
-    // Contact holds a body only where it is pressed, and nobody knows that in
+    // Contact holds a body only where it is pressed, and where that is is not known in
     // advance, so the displacement conditions have to do it alone. A part of
     // the boundary and every component: that leaves out only oddities.
     if (dirichlet.empty())

@@ -158,7 +158,7 @@ namespace Friction
 
     /**
      * The law of friction. Coulomb's law with a coefficient of zero is
-     * reported as no friction, so that nobody computes anything for it.
+     * reported as no friction, so that nothing is computed for it.
      */
     FrictionLaw friction_law() const;
 

@@ -19,6 +19,27 @@ def console(runs):
     return (runs / "hertz" / "console.txt").read_text().rstrip()
 
 
+def scene():
+    """The scene file as it is."""
+    source = Path(__file__).parents[2] / "step-friction-2d" / "scenes" / "hertz.prm"
+    return source.read_text().rstrip()
+
+
+def one_level(runs):
+    """The cycles of the last level of the Hertz scene."""
+    with h5py.File(runs / "hertz" / "history.h5") as file:
+        level = file["cycles/level"][:]
+        here = level == level.max()
+        columns = [file[f"cycles/{name}"][:][here]
+                   for name in ("increment", "energy", "step_length", "truncated")]
+    last = columns[1][-1]
+    rows = [" cycle  increment  energy above the last one  step length  truncated"]
+    for k, (increment, energy, length, truncated) in enumerate(zip(*columns)):
+        rows.append(f" {k + 1:5d}  {increment:9.0e}  {(energy - last) / abs(last):24.0e}"
+                    f"  {length:11.2f}  {truncated:9.0f}")
+    return "\n".join(rows)
+
+
 def table_6_1(runs):
     """Algorithms 2 and 3 beside the thesis, level by level."""
     jacobi, seidel = HertzRun(runs / "fixed-point"), HertzRun(runs / "W33-monotone")
@@ -153,7 +174,9 @@ def checks(runs):
 
 def main():
     runs, output, document = map(Path, sys.argv[1:4])
-    tables.write({"console": partial(console, runs),
+    tables.write({"scene": scene,
+                  "console": partial(console, runs),
+                  "one-level": partial(one_level, runs),
                   "table-6.1": partial(table_6_1, runs),
                   "cycles": partial(cycles, runs),
                   "half-plane": partial(comparison, runs),

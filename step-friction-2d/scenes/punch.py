@@ -6,7 +6,7 @@
 A punch of width 2 whose lower face is flat for |x| < 0.5 and bends upwards from
 there, with radius 1; it has a hole of radius 0.2. Columns of quadrilaterals,
 and rings of them in a square around the hole. The columns are narrow under the
-bend, because whoever refines a mesh from a file does not know that an edge of
+bend, because refinement of a mesh from a file does not know that an edge of
 it was meant to be round.
 """
 from math import atan2, cos, sin, sqrt

@@ -196,7 +196,7 @@ namespace
   curvature_of_friction(const Truncation<dim> &truncation, const VectorType &v)
   {
     double sum = 0;
-    for (const unsigned int node : truncation.special_nodes())
+    for (const unsigned int node : truncation.changed_nodes())
       sum += dot<dim>(
         v.begin() + dim * node,
         times<dim>(truncation.curvature(node).data(), v.begin() + dim * node)
@@ -650,7 +650,7 @@ namespace
     };
     const auto truncated_residual = [&](const VectorType &x) {
       VectorType r = residual(x);
-      for (const unsigned int node : truncation.special_nodes())
+      for (const unsigned int node : truncation.changed_nodes())
         {
           const auto part = times<dim>(truncation.curvature(node).data(),
                                        x.begin() + dim * node);
@@ -748,7 +748,7 @@ namespace
           }
       }
     double curvature = 0;
-    for (const unsigned int node : truncation.special_nodes())
+    for (const unsigned int node : truncation.changed_nodes())
       curvature =
         std::max(curvature, trace<dim>(truncation.curvature(node).data()));
     check((curvature > 0) == (dim == 3),

@@ -74,7 +74,7 @@ namespace
     };
 
     Body crossing_rods  = parallel_rods;
-    crossing_rods.scene() = "crossing-rods";
+    crossing_rods.scene = "crossing-rods";
     crossing_rods.push  = {0, -.08, 0};
     crossing_rods.gap   = [](const Vector &x, const Vector &n) {
       double gap = infinity;
@@ -87,7 +87,7 @@ namespace
     // Pushed harder than in the scene, so that a coarse mesh has some nodes in
     // contact.
     Body half_ball;
-    half_ball.scene()   = "half-ball";
+    half_ball.scene   = "half-ball";
     half_ball.push    = {0, 0, -.3};
     half_ball.is_held = [](const Vector &x) { return x[2] > -1e-9; };
     half_ball.radial  = [](const Vector &x) { return x; };

@@ -7,6 +7,7 @@
 // with the largest number of unknowns for which to try the factorisation.
 
 #include <common/algorithms/nested_iteration.h>
+#include <common/compatibility.h>
 
 #include <deal.II/base/timer.h>
 

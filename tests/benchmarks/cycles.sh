@@ -33,12 +33,12 @@ for F in "$@"; do
   row "default: truncated, V, 3+3 leaf, 6+6 coarse" "$friction"
   row "  without recombination" "$friction" 'Solver/Recombined steps=0'
   row "  two recombined steps" "$friction" 'Solver/Recombined steps=2'
-  row "  damping at most 1" "$friction" 'Solver/Maximum damping=1'
-  row "  neither" "$friction" 'Solver/Maximum damping=1' \
+  row "  damping at most 1" "$friction" 'Solver/Maximum step length=1'
+  row "  neither" "$friction" 'Solver/Maximum step length=1' \
     'Solver/Recombined steps=0'
   row "  3+3 coarse" "$friction" 'Solver/Coarse smoothing steps=3'
   row "  3+3 coarse, neither" "$friction" 'Solver/Coarse smoothing steps=3' \
-    'Solver/Maximum damping=1' 'Solver/Recombined steps=0'
+    'Solver/Maximum step length=1' 'Solver/Recombined steps=0'
   row "  all contact nodes truncated" "$friction" 'Solver/Truncation=contact'
   case $program in
   *3d) row "  without second order" "$friction" "$without" ;;

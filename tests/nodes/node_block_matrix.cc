@@ -378,14 +378,14 @@ namespace
         {
           const unsigned int   j = problem.matrix().column(e);
           const NodeBlock<dim> block =
-            truncation.sandwich(i, problem.matrix().block(e), j);
+            truncation.truncated_block(i, problem.matrix().block(e), j);
           for (unsigned int c = 0; c < dim; ++c)
             for (unsigned int r = 0; r < dim; ++r)
               difference = std::max(
                 difference,
                 std::abs(block[c * dim + r] - TAT(dim * i + r, dim * j + c)));
         }
-    check_below(difference, 1e-14, "sandwich()");
+    check_below(difference, 1e-14, "truncated_block()");
 
     // Agreement is a matter of both projector and curvature.
     Truncation<dim>    other = truncation;

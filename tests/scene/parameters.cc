@@ -96,7 +96,7 @@ main()
                   solver.maximum_cycles == settings.maximum_cycles &&
                   solver.maximum_outer_iterations ==
                     settings.maximum_outer_iterations &&
-                  solver.maximum_damping == settings.maximum_damping &&
+                  solver.maximum_step_length == settings.maximum_step_length &&
                   solver.recombined_steps == settings.recombined_steps &&
                   solver.outer_damping == settings.outer_damping)
               << std::endl;
