@@ -1,3 +1,4 @@
+#include <common/parallel/owned_values.h>
 #include <common/parallel/phase_costs.h>
 #include <common/parallel/reductions.h>
 #include <common/solvers/monotone_multigrid.h>
@@ -319,7 +320,7 @@ namespace Friction
         linearization.bounds(lower, upper, u, state);
         coarse->apply_within_bounds(v, r, lower, upper);
         functional.project(v, u);
-        u += v;
+        add_owned(u, 1., v);
         smoother.ghosts().update(u.begin(), dim);
         return 1.;
       }
@@ -358,7 +359,7 @@ namespace Friction
                                               products.slope,
                                               products.curvature,
                                               settings.maximum_damping);
-    v *= length;
+    scale_owned(v, length);
     const bool cut_off =
       true_on_any_process(functional.project(v, u) > 0, problem.communicator());
     if (cut_off)
@@ -374,12 +375,12 @@ namespace Friction
           products.slope,
           products.curvature,
           functional.admissible_length(v, u, settings.maximum_damping));
-        v *= rest;
+        scale_owned(v, rest);
         length *= rest;
       }
     if (length < short_step && (cut_off || stopped))
       length = try_whole_correction(v, length, whole, u, residual, state);
-    u += v;
+    add_owned(u, 1., v);
     smoother.ghosts().update(u.begin(), dim);
     return length;
   }
@@ -414,15 +415,15 @@ namespace Friction
       products.slope,
       products.curvature,
       functional.admissible_length(other, u, settings.maximum_damping));
-    other *= other_length;
+    scale_owned(other, other_length);
     functional.project(other, u);
 
     const auto energy_after = [&](VectorType &step) {
       multiply(Av, step);
       moved = u;
-      moved += step;
+      add_owned(moved, 1., step);
       r = residual;
-      r -= Av;
+      add_owned(r, -1., Av);
       return functional.energy(moved, r, state);
     };
     if (!(energy_after(other) < energy_after(v)))

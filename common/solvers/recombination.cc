@@ -1,3 +1,4 @@
+#include <common/parallel/owned_values.h>
 #include <common/parallel/reductions.h>
 #include <common/solvers/best_combination.h>
 #include <common/solvers/recombination.h>
@@ -37,9 +38,9 @@ namespace Friction
             products.emplace_front(u);
           }
         steps.front() = u;
-        steps.front() -= last_iterate;
+        add_owned(steps.front(), -1., last_iterate);
         products.front() = last_residual;
-        products.front() -= residual;
+        add_owned(products.front(), -1., residual);
       }
     last_iterate  = u;
     last_residual = residual;
@@ -126,12 +127,12 @@ namespace Friction
     if (coefficients.empty())
       return 0;
 
-    v *= coefficients[0];
-    Av *= coefficients[0];
+    scale_owned(v, coefficients[0]);
+    scale_owned(Av, coefficients[0]);
     for (unsigned int i = 1; i < n; ++i)
       {
-        v.add(coefficients[i], *basis[i]);
-        Av.add(coefficients[i], *images[i]);
+        add_owned(v, coefficients[i], *basis[i]);
+        add_owned(Av, coefficients[i], *images[i]);
       }
     truncation.apply(v.begin());
     return n - 1;
