@@ -1,3 +1,4 @@
+#include <common/parallel/owned_values.h>
 #include <common/parallel/reductions.h>
 #include <common/iteration/best_combination.h>
 #include <common/iteration/recombination.h>
@@ -50,9 +51,9 @@ namespace Friction
             products.emplace_front(u);
           }
         steps.front() = u;
-        steps.front() -= last_iterate;
+        add_owned(steps.front(), -1., last_iterate);
         products.front() = last_residual;
-        products.front() -= residual;
+        add_owned(products.front(), -1., residual);
       }
     has_last      = true;
     last_iterate  = u;
@@ -140,12 +141,12 @@ namespace Friction
     if (coefficients.empty())
       return 0;
 
-    v *= coefficients[0];
-    Av *= coefficients[0];
+    scale_owned(v, coefficients[0]);
+    scale_owned(Av, coefficients[0]);
     for (unsigned int i = 1; i < n; ++i)
       {
-        v.add(coefficients[i], *basis[i]);
-        Av.add(coefficients[i], *images[i]);
+        add_owned(v, coefficients[i], *basis[i]);
+        add_owned(Av, coefficients[i], *images[i]);
       }
     truncation.apply(v.begin());
     return n - 1;

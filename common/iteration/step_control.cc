@@ -1,4 +1,5 @@
 #include <common/iteration/step_control.h>
+#include <common/parallel/owned_values.h>
 #include <common/parallel/reductions.h>
 
 #include <array>
@@ -28,7 +29,7 @@ namespace Friction
                          const Truncation<dim> &)
   {
     functional.project(v, x.u);
-    x.u += v;
+    add_owned(x.u, 1., v);
     return 1.;
   }
 
@@ -84,7 +85,7 @@ namespace Friction
       return 0.;
     double length = functional.minimize_along(
       v, x, products.slope, products.curvature, largest_step);
-    v *= length;
+    scale_owned(v, length);
     const bool cut_off = true_on_any_process(functional.project(v, x.u) > 0,
                                              problem.communicator());
     // The obstacle has cut the correction off: minimise along what is left of
@@ -93,7 +94,7 @@ namespace Friction
       length *= minimize_within_obstacle(x, v);
     if (length < short_step && (cut_off || stopped))
       length = try_whole_correction(x, v, length);
-    x.u += v;
+    add_owned(x.u, 1., v);
     return length;
   }
 
@@ -112,7 +113,7 @@ namespace Friction
       products.slope,
       products.curvature,
       functional.admissible_length(v, x.u, largest_step));
-    v *= length;
+    scale_owned(v, length);
     return length;
   }
 
@@ -140,9 +141,9 @@ namespace Friction
     const auto energy_after = [&](const VectorType &step) {
       problem.stiffness.vmult(Av, step);
       moved = x.u;
-      moved += step;
+      add_owned(moved, 1., step);
       r = x.residual;
-      r -= Av;
+      add_owned(r, -1., Av);
       return functional.energy(moved, r, x.state);
     };
     if (!(energy_after(whole) < energy_after(v)))

@@ -1,4 +1,5 @@
 #include <common/iteration/truncated_correction.h>
+#include <common/parallel/owned_values.h>
 
 namespace Friction
 {
@@ -99,7 +100,8 @@ namespace Friction
         VectorType &own = work[k];
         own             = 0.;
         transfer.prolongate_and_add(k, own, coarse);
-        own.sadd(-1., 1., c);
+        scale_owned(own, -1.);
+        add_owned(own, 1., c);
         const PhaseScope phase(levels.communicator(),
                                SolverPhase::coarse_sweeps);
         levels.coupled_ghosts(k).update(own.begin(), dim);
@@ -111,7 +113,8 @@ namespace Friction
     for (unsigned int i = 0; i < (k == 1 ? 1 : cycle_parameter); ++i)
       visit(k - 1);
 
-    before.sadd(-1., 1., coarse);
+    scale_owned(before, -1.);
+    add_owned(before, 1., coarse);
     transfer.prolongate_and_add(k, c, before);
     levels.coupled_ghosts(k).update(c.begin(), dim);
     relax(k, true, nullptr);

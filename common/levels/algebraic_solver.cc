@@ -1,4 +1,5 @@
 #include <common/levels/algebraic_solver.h>
+#include <common/parallel/owned_values.h>
 #include <common/parallel/phase_costs.h>
 
 #include <deal.II/base/mpi.h>
@@ -203,8 +204,8 @@ namespace Friction
         if (!(energy > 1e-12 * rMr) || !std::isfinite(energy))
           return Outcome::broken;
         const double length = rMr / energy;
-        x.add(length, direction);
-        residual.add(-length, image);
+        add_owned(x, length, direction);
+        add_owned(residual, -length, image);
 
         precondition(preconditioned, residual);
         project(preconditioned);
@@ -216,7 +217,8 @@ namespace Friction
           return Outcome::converged;
         if (last_iterations == maximum_iterations)
           return Outcome::slow;
-        direction.sadd(rMr / rMr_before, 1., preconditioned);
+        scale_owned(direction, rMr / rMr_before);
+        add_owned(direction, 1., preconditioned);
       }
   }
 
