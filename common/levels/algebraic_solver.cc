@@ -1,6 +1,7 @@
 #include <common/levels/algebraic_solver.h>
 #include <common/parallel/owned_values.h>
 #include <common/parallel/phase_costs.h>
+#include <common/parallel/reductions.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -65,17 +66,25 @@ namespace Friction
           std::make_unique<TrilinosWrappers::SolverDirect>(control);
         factorization->initialize(which);
       };
+    // All processes go on in the same way, whichever of them the factorisation
+    // has failed on.
+    const MPI_Comm comm   = matrix->get_mpi_communicator();
+    bool           is_bad = false;
     try
       {
         factorize_matrix(*matrix);
       }
     catch (const ExceptionBase &)
       {
+        is_bad = true;
+      }
+    if (true_on_any_process(is_bad, comm))
+      {
         const IndexSet owned   = matrix->locally_owned_range_indices();
         double         largest = 0.;
         for (const auto i : owned)
           largest = std::max(largest, matrix->diag_element(i));
-        largest = Utilities::MPI::max(largest, matrix->get_mpi_communicator());
+        largest = Utilities::MPI::max(largest, comm);
         shifted_matrix.copy_from(*matrix);
         for (const auto i : owned)
           shifted_matrix.add(i, i, 1e-10 * largest);

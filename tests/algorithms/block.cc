@@ -1,6 +1,7 @@
-// The block scene against a direct solution of the same discrete law, found by
-// other means: displacements, nodal forces and states of all nodes must be the
-// same, whatever the algorithm, the coarse correction and the cycle.
+// The scenes block and tresca against direct solutions of the same discrete
+// laws, found by other means: displacements, nodal forces and states of all
+// nodes must be the same, whatever the algorithm, the coarse correction and the
+// cycle.
 
 #include <common/algorithms/nested_iteration.h>
 
@@ -15,15 +16,24 @@ using namespace Tests;
 
 namespace
 {
-  void
-  compare(const unsigned int refinements, const double F, const double nu)
+  std::string
+  override(const std::string &entry, const double value)
   {
-    const unsigned int               n       = 1 << refinements;
-    const Reference::ContactProblem  problem = Reference::block(n, F, nu);
-    const Reference::ContactSolution exact   = Reference::solve(problem);
+    std::ostringstream text;
+    text << entry << '=' << value;
+    return text.str();
+  }
 
-    std::cout << n << "x" << n << " cells, F = " << F << ", nu = " << nu << ": "
-              << exact.state.size() - exact.count(Reference::State::open)
+
+
+  void
+  compare(const unsigned int               refinements,
+          const Reference::ContactProblem &problem,
+          const std::string               &scene,
+          std::vector<std::string>         overrides)
+  {
+    const Reference::ContactSolution exact = Reference::solve(problem);
+    std::cout << exact.state.size() - exact.count(Reference::State::open)
               << " nodes in contact, "
               << exact.count(Reference::State::sticking) << " sticking"
               << std::endl;
@@ -34,18 +44,12 @@ namespace
     double       displacement_error = 0, force_error = 0, certificate = 0;
     unsigned int different_states = 0, not_converged = 0;
 
-    const auto override = [](const std::string &entry, const double value) {
-      std::ostringstream text;
-      text << entry << '=' << value;
-      return text.str();
-    };
+    overrides.insert(overrides.end(),
+                     {override("Refinement/Initial refinements", refinements),
+                      "Solver/Inner tolerance=1e-12",
+                      "Solver/Outer tolerance=1e-11"});
     NestedIteration<2> iteration(
-      read_parameters(SCENES_DIR "/block.prm",
-                      {override("Contact/Friction coefficient", F),
-                       override("Material/Poisson ratio", nu),
-                       override("Refinement/Initial refinements", refinements),
-                       "Solver/Inner tolerance=1e-12",
-                       "Solver/Outer tolerance=1e-11"}));
+      read_parameters(SCENES_DIR "/" + scene + ".prm", overrides));
     iteration.begin();
     const Discretization<2> &d = iteration.discretization();
 
@@ -107,6 +111,45 @@ namespace
       std::cout << "  displacement " << displacement_error << ", force "
                 << force_error << ", certificate " << certificate << std::endl;
   }
+
+
+
+  void
+  compare_coulomb(const unsigned int refinements,
+                  const double       F,
+                  const double       nu)
+  {
+    const unsigned int n = 1 << refinements;
+    std::cout << n << "x" << n << " cells, F = " << F << ", nu = " << nu
+              << ": ";
+    compare(refinements,
+            Reference::block(n, F, nu),
+            "block",
+            {override("Contact/Friction coefficient", F),
+             override("Material/Poisson ratio", nu)});
+  }
+
+
+
+  // The bound of a node is the stress times its part of the lower edge.
+  void
+  compare_tresca(const unsigned int refinements, const double bound)
+  {
+    const unsigned int n = 1 << refinements;
+    std::cout << n << "x" << n << " cells, Tresca with the bound " << bound
+              << ": ";
+    Reference::ContactProblem problem = Reference::block(n, 0., 0.3);
+    problem.friction                  = Reference::Friction::tresca;
+    for (Reference::ContactNode &node : problem.contact)
+      {
+        const double x      = problem.mesh.nodes[node.node][0];
+        node.friction_bound = bound / n * (x == 0. || x == 1. ? .5 : 1.);
+      }
+    compare(refinements,
+            problem,
+            "tresca",
+            {override("Contact/Friction bound", bound)});
+  }
 } // namespace
 
 int
@@ -116,7 +159,9 @@ main(int argc, char **argv)
   for (const unsigned int refinements : {3, 4})
     {
       for (const double F : {0., 0.05, 0.4, 1.})
-        compare(refinements, F, 0.3);
-      compare(refinements, 0.4, 0.45);
+        compare_coulomb(refinements, F, 0.3);
+      compare_coulomb(refinements, 0.4, 0.45);
+      for (const double bound : {0.003, 0.006, 0.1})
+        compare_tresca(refinements, bound);
     }
 }

@@ -67,6 +67,7 @@ class Prose:
         elif block.language == "prm":
             self.check_scene_lines(file, block)
         elif block.language in ("cpp", "c++", "cc"):
+            self.check_quotation(file, block)
             for number, line in enumerate(block.text.split("\n")):
                 line = re.sub(r"//.*", "", line)
                 for word in re.findall(r"\b[^\W\d]\w*", line):
@@ -74,6 +75,20 @@ class Prose:
                             and word not in self.names.foreign):
                         self.report(file, block.line + number,
                                     f"no source has the word '{word}'")
+
+    def check_quotation(self, file, block):
+        """A block after a comment 'from FILE' stands there, but for spaces."""
+        for note in block.notes:
+            match = re.fullmatch(r"from (\S+)", note)
+            if not match:
+                continue
+            source = self.repository.sources.get(match.group(1))
+            if source is None:
+                self.report(file, block.line, f"there is no '{match.group(1)}' to "
+                            "quote from")
+            elif " ".join(block.text.split()) not in " ".join(source.split()):
+                self.report(file, block.line, f"{match.group(1)} does not have these "
+                            "lines (any more)")
 
     def check_scene_lines(self, file, block):
         section = None

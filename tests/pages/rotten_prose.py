@@ -64,6 +64,17 @@ Shape area;
 missing(area); // ROTTEN
 ```
 
+<!-- from source.cc -->
+```cpp
+struct Shape
+{double area();};
+```
+
+<!-- from source.cc -->
+```cpp
+struct Shape; // ROTTEN
+```
+
 ```console
 a command that nothing runs, ROTTEN
 ```
