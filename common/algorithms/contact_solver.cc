@@ -31,9 +31,8 @@ namespace Friction
   {
     if (settings.coarse_correction == CoarseCorrection::monotone)
       return std::make_unique<FullStep<dim>>(functional);
-    return std::make_unique<LineSearch<dim>>(functional,
-                                             settings.maximum_step_length,
-                                             settings.recombined_steps);
+    return std::make_unique<LineSearch<dim>>(
+      functional, settings.maximum_step_length, settings.recombined_steps);
   }
 
 
@@ -41,9 +40,8 @@ namespace Friction
   template <int dim>
   ContactSolver<dim>::ContactSolver(const Discretization<dim> &discretization,
                                     const SolverSettings      &settings)
-    : ContactSolver(discretization.dof_handler(),
-                    discretization.problem(),
-                    settings)
+    : ContactSolver(
+        discretization.dof_handler(), discretization.problem(), settings)
   {}
 
 
@@ -81,14 +79,10 @@ namespace Friction
 
 
 
-  template std::unique_ptr<Correction<2>>
-  make_correction(Levels<2> &,
-                  const DiscreteProblem<2> &,
-                  const SolverSettings &);
-  template std::unique_ptr<Correction<3>>
-  make_correction(Levels<3> &,
-                  const DiscreteProblem<3> &,
-                  const SolverSettings &);
+  template std::unique_ptr<Correction<2>> make_correction(
+    Levels<2> &, const DiscreteProblem<2> &, const SolverSettings &);
+  template std::unique_ptr<Correction<3>> make_correction(
+    Levels<3> &, const DiscreteProblem<3> &, const SolverSettings &);
   template std::unique_ptr<StepControl<2>>
   make_step_control(const TrescaFunctional<2> &, const SolverSettings &);
   template std::unique_ptr<StepControl<3>>

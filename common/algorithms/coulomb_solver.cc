@@ -9,19 +9,18 @@
 
 namespace Friction
 {
-  namespace
+  CoulombSettings::CoulombSettings(const SolverSettings &settings)
+    : algorithm(settings.algorithm)
+    , outer_tolerance(settings.outer_tolerance)
+    , maximum_outer_iterations(settings.maximum_outer_iterations)
+    , outer_damping(settings.outer_damping)
+    , mixed_outer_iterations(settings.mixed_outer_iterations)
+    , certificate_tolerance(settings.certificate_tolerance)
   {
-    MultigridLimits
-    limits_of(const SolverSettings &settings)
-    {
-      MultigridLimits limits;
-      limits.inner_tolerance  = settings.inner_tolerance;
-      limits.energy_tolerance = settings.energy_tolerance;
-      limits.maximum_cycles   = settings.maximum_cycles;
-      limits.gives_up_early   = settings.gives_up_early;
-      return limits;
-    }
-  } // namespace
+    limits.inner_tolerance  = settings.inner_tolerance;
+    limits.energy_tolerance = settings.energy_tolerance;
+    limits.maximum_cycles   = settings.maximum_cycles;
+  }
 
 
 
@@ -43,7 +42,7 @@ namespace Friction
 
   template <int dim>
   CoulombSolver<dim>::CoulombSolver(MonotoneMultigrid<dim> &iteration,
-                                    const SolverSettings   &settings)
+                                    const CoulombSettings  &settings)
     : iteration(iteration)
     , settings(settings)
   {}
@@ -59,7 +58,7 @@ namespace Friction
     SolverReport                report;
     const DiscreteProblem<dim> &problem = iteration.problem();
     const bool                  coulomb = problem.has_coulomb_friction();
-    const PhaseCosts before = phase_costs(problem.communicator());
+    const PhaseCosts            before  = phase_costs(problem.communicator());
 
     Iterate x(u, state);
     if (coulomb && settings.algorithm == Algorithm::fixed_point)
@@ -68,7 +67,7 @@ namespace Friction
       {
         x.updates_normal_forces = coulomb;
         const MultigridResult result =
-          run_multigrid(iteration, x, limits_of(settings), progress);
+          run_multigrid(iteration, x, settings.limits, progress);
         report.converged        = result.converged;
         report.inner_converged  = result.converged;
         report.algebraic_error  = result.algebraic_error;
@@ -113,7 +112,7 @@ namespace Friction
           given[p] = state.normal_force(p);
 
         const MultigridResult result =
-          run_multigrid(iteration, x, limits_of(settings), progress);
+          run_multigrid(iteration, x, settings.limits, progress);
         report.cycles.insert(
           report.cycles.end(), result.cycles.begin(), result.cycles.end());
         if (report.outer_iterations++ == 0)

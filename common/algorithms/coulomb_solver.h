@@ -7,6 +7,26 @@
 
 namespace Friction
 {
+  /** Which algorithm, and when it ends. */
+  struct CoulombSettings
+  {
+    /** What the user has chosen. */
+    explicit CoulombSettings(const SolverSettings &settings);
+
+    Algorithm       algorithm;
+    MultigridLimits limits; ///< of each multigrid iteration
+
+    /// Of Algorithm 2; see SolverSettings.
+    double       outer_tolerance;
+    unsigned int maximum_outer_iterations;
+    double       outer_damping;
+    unsigned int mixed_outer_iterations;
+
+    double certificate_tolerance;
+  };
+
+
+
   /**
    * Solves the discrete contact problem with the law of friction it has.
    *
@@ -28,7 +48,7 @@ namespace Friction
      * @param settings   which algorithm, and when to stop.
      */
     CoulombSolver(MonotoneMultigrid<dim> &iteration,
-                  const SolverSettings   &settings);
+                  const CoulombSettings  &settings);
 
     /**
      * Solves, and certifies the solution. Collective.
@@ -41,7 +61,7 @@ namespace Friction
 
   private:
     MonotoneMultigrid<dim> &iteration;
-    const SolverSettings    settings;
+    const CoulombSettings   settings;
 
     void iterate_normal_forces(SolverReport   &report,
                                Iterate        &x,

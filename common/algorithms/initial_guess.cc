@@ -12,8 +12,7 @@ namespace Friction
   {
     const ContactBoundary<dim> &contact = discretization.contact();
     const Scene<dim>           &scene   = discretization.scene();
-    ContactState                state(contact.size(),
-                       discretization.problem().has_friction());
+    ContactState state(contact.size(), discretization.problem().has_friction());
     discretization.constraints().impose(u);
     for (unsigned int p = 0; p < contact.size(); ++p)
       {
@@ -22,9 +21,9 @@ namespace Friction
         if (excess > 0)
           for (unsigned int d = 0; d < dim; ++d)
             u.local_element(dim * node.node + d) -= excess * node.normal()[d];
-        const double stress = scene.friction_law() == FrictionLaw::tresca ?
-          scene.friction_bound()->value(node.point) :
-          std::max(0., -normal_component(node, tractions));
+        const double stress = scene.friction_law() == FrictionLaw::tresca
+          ? scene.friction_bound()->value(node.point)
+          : std::max(0., -normal_component(node, tractions));
         state.set_normal_force(p, node.measure * stress);
         state.set(p, excess >= 0, false);
       }

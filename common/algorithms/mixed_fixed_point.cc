@@ -1,6 +1,6 @@
-#include <common/parallel/reductions.h>
-#include <common/iteration/best_combination.h>
 #include <common/algorithms/mixed_fixed_point.h>
+#include <common/iteration/best_combination.h>
+#include <common/parallel/reductions.h>
 
 #include <algorithm>
 #include <cmath>

@@ -116,7 +116,8 @@ namespace Friction
               (last_residual.local_element(i) - r);
           sums[norm] += u * (problem.forces.local_element(i) - r);
         }
-      sums[energy] = iteration.functional().energy_share(x.u, x.residual, x.state);
+      sums[energy] =
+        iteration.functional().energy_share(x.u, x.residual, x.state);
       if (!first)
         {
           for (unsigned int i = 0; i < n_dofs; ++i)
@@ -132,10 +133,10 @@ namespace Friction
     double floor_of_norm = 0;
     for (unsigned int cycle = 1;; ++cycle)
       {
-        last_u        = x.u;
-        last_residual = x.residual;
-        CycleInfo info = {};
-        info.energy    = sums[energy];
+        last_u           = x.u;
+        last_residual    = x.residual;
+        CycleInfo info   = {};
+        info.energy      = sums[energy];
         info.step_length = iteration.iterate(x);
         result.cycles.push_back(info);
 
@@ -147,8 +148,8 @@ namespace Friction
         CycleInfo   &last         = result.cycles.back();
         last.increment =
           std::sqrt(std::max(0., sums[increment]) / squared_size);
-        last.residual   = std::sqrt(sums[residual]);
-        last.truncated  = sums[truncated];
+        last.residual  = std::sqrt(sums[residual]);
+        last.truncated = sums[truncated];
         if (progress)
           progress(cycle, last.increment);
         if (!std::isfinite(last.increment))
@@ -162,9 +163,9 @@ namespace Friction
           }
         if (cycle >= limits.maximum_cycles ||
             (limits.gives_up_early &&
-             result.stalls(std::max(limits.inner_tolerance,
-                                    limits.energy_tolerance / size),
-                           limits.maximum_cycles)))
+             result.stalls(
+               std::max(limits.inner_tolerance, limits.energy_tolerance / size),
+               limits.maximum_cycles)))
           break;
       }
     return result;

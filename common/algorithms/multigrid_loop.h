@@ -16,11 +16,11 @@ namespace Friction
   /** What happened in one multigrid cycle. */
   struct CycleInfo
   {
-    double increment; ///< energy norm of the increment, relative to u's
-    double energy;    ///< of the smoothed iterate
+    double increment;   ///< energy norm of the increment, relative to u's
+    double energy;      ///< of the smoothed iterate
     double step_length; ///< step length of the coarse correction
-    double truncated; ///< components held at all contact nodes
-    double residual;  ///< Euclidean norm of the truncated residual
+    double truncated;   ///< components held at all contact nodes
+    double residual;    ///< Euclidean norm of the truncated residual
   };
 
 

@@ -1,5 +1,5 @@
-#include <common/parallel/reductions.h>
 #include <common/algorithms/safeguarded_solver.h>
+#include <common/parallel/reductions.h>
 
 #include <algorithm>
 #include <cctype>
@@ -54,13 +54,13 @@ namespace Friction
 
 
 
-    // The settings of the first attempt may give an iteration up early, if
-    // there is something else to be tried.
-    SolverSettings
+    // The first attempt may give an iteration up early, since there is
+    // something else to be tried.
+    CoulombSettings
     first_settings(const SolverSettings &settings)
     {
-      SolverSettings result = settings;
-      result.gives_up_early = settings.safeguards;
+      CoulombSettings result(settings);
+      result.limits.gives_up_early = true;
       return result;
     }
 
@@ -68,11 +68,11 @@ namespace Friction
 
     // What all other attempts have in common. They are to find a solution, to
     // the usual tolerance.
-    SolverSettings
+    CoulombSettings
     fallback_settings(const SolverSettings &settings)
     {
-      SolverSettings result   = first_settings(settings);
-      result.energy_tolerance = 0.;
+      CoulombSettings result         = first_settings(settings);
+      result.limits.energy_tolerance = 0.;
       return result;
     }
 
@@ -108,9 +108,8 @@ namespace Friction
     , line_search(iteration.functional(),
                   settings.maximum_step_length,
                   settings.recombined_steps)
-    , short_steps(iteration.functional(),
-                  std::min(.5, settings.maximum_step_length),
-                  0)
+    , short_steps(
+        iteration.functional(), std::min(.5, settings.maximum_step_length), 0)
   {}
 
 
@@ -123,9 +122,8 @@ namespace Friction
     if (settings.truncation != TruncationVariant::phases)
       {
         if (!phases)
-          phases =
-            std::make_unique<Linearization<dim>>(problem,
-                                                 TruncationVariant::phases);
+          phases = std::make_unique<Linearization<dim>>(
+            problem, TruncationVariant::phases);
         result = result.with(*phases);
       }
     if (settings.coarse_correction != CoarseCorrection::truncated)
@@ -145,9 +143,8 @@ namespace Friction
   SafeguardedSolver<dim>::algebraic_correction()
   {
     if (!algebraic)
-      algebraic =
-        std::make_unique<AlgebraicCorrection<dim>>(problem,
-                                                   settings.coarsest_method);
+      algebraic = std::make_unique<AlgebraicCorrection<dim>>(
+        problem, settings.coarsest_method);
     return *algebraic;
   }
 
@@ -157,14 +154,13 @@ namespace Friction
   SolverReport
   SafeguardedSolver<dim>::attempt(const std::string      &name,
                                   MonotoneMultigrid<dim> &with_iteration,
-                                  const SolverSettings   &with_settings,
+                                  const CoulombSettings  &with_settings,
                                   const Search           &search) const
   {
     const VectorType   start       = search.u;
     const ContactState start_state = search.state;
-    SolverReport       report =
-      CoulombSolver<dim>(with_iteration, with_settings)
-        .solve(search.u, search.state, search.progress);
+    SolverReport report = CoulombSolver<dim>(with_iteration, with_settings)
+                            .solve(search.u, search.state, search.progress);
     add_attempt(search.all, name, report, report.cycles);
     if (!is_finite(search.u, search.state, problem.communicator()))
       {
@@ -183,11 +179,12 @@ namespace Friction
                                 const Progress &progress)
   {
     if (!settings.safeguards)
-      return CoulombSolver<dim>(iteration, settings).solve(u, state, progress);
+      return CoulombSolver<dim>(iteration, CoulombSettings(settings))
+        .solve(u, state, progress);
 
-    const PhaseCosts   before  = phase_costs(problem.communicator());
-    const bool         coulomb = problem.has_coulomb_friction();
-    const VectorType   initial = u;
+    const PhaseCosts   before        = phase_costs(problem.communicator());
+    const bool         coulomb       = problem.has_coulomb_friction();
+    const VectorType   initial       = u;
     const ContactState initial_state = state;
     const std::string  name          = name_of(problem, settings);
     SolverReport       all;
@@ -209,7 +206,7 @@ namespace Friction
           !outer_failure && (!coulomb || !phases_change(report));
         if (!slow_corrections && !outer_failure)
           {
-            report = attempt(name + " with short steps",
+            report           = attempt(name + " with short steps",
                              cautious,
                              fallback_settings(settings),
                              search);
@@ -217,9 +214,10 @@ namespace Friction
           }
         if (!report.converged && slow_corrections)
           {
-            LineSearch<dim> whole_steps(iteration.functional(),
-                                        std::min(1., settings.maximum_step_length),
-                                        0);
+            LineSearch<dim> whole_steps(
+              iteration.functional(),
+              std::min(1., settings.maximum_step_length),
+              0);
             MonotoneMultigrid<dim> without_levels =
               cautious.with(algebraic_correction()).with(whole_steps);
             report = attempt(name + " with algebraic corrections",
@@ -267,15 +265,15 @@ namespace Friction
   SolverReport
   SafeguardedSolver<dim>::mixed_algorithm_2(const Search &search)
   {
-    SolverSettings mixed         = fallback_settings(settings);
+    CoulombSettings mixed        = fallback_settings(settings);
     mixed.algorithm              = Algorithm::fixed_point;
     mixed.outer_damping          = .5;
     mixed.mixed_outer_iterations = 10;
     mixed.maximum_outer_iterations =
       std::max(200u, settings.maximum_outer_iterations);
 
-    const std::string      name = "Algorithm 2 with mixed normal forces";
-    MonotoneMultigrid<dim> best = best_iteration();
+    const std::string      name   = "Algorithm 2 with mixed normal forces";
+    MonotoneMultigrid<dim> best   = best_iteration();
     SolverReport           report = attempt(name, best, mixed, search);
     if (!report.inner_converged)
       {
@@ -298,7 +296,7 @@ namespace Friction
   SolverReport
   SafeguardedSolver<dim>::careful_algorithm_2(const Search &search)
   {
-    SolverSettings careful           = fallback_settings(settings);
+    CoulombSettings careful          = fallback_settings(settings);
     careful.algorithm                = Algorithm::fixed_point;
     careful.outer_damping            = .02;
     careful.mixed_outer_iterations   = 0;
@@ -308,15 +306,15 @@ namespace Friction
       .01 * std::max(1., problem.effective_coefficient());
     const std::string name =
       "Algorithm 2 with small steps of the normal forces";
-    SolverReport           steps;
-    const Search           inner  = {search.u, search.state, steps, search.progress};
+    SolverReport steps;
+    const Search inner = {search.u, search.state, steps, search.progress};
     MonotoneMultigrid<dim> best   = best_iteration();
     SolverReport           report = attempt(name, best, careful, inner);
     if (report.inner_converged)
       {
         careful.outer_tolerance        = settings.outer_tolerance;
         careful.mixed_outer_iterations = 10;
-        report = attempt(name, best, careful, inner);
+        report                         = attempt(name, best, careful, inner);
       }
     add_attempt(search.all, name, report, steps.cycles);
     return report;
@@ -338,14 +336,13 @@ namespace Friction
     SolverReport     report, steps;
     while (solved < target)
       {
-        const double coefficient = solved == 0
-          ? std::min(easy, target / 2)
-          : std::min(solved * factor, target);
+        const double coefficient     = solved == 0
+              ? std::min(easy, target / 2)
+              : std::min(solved * factor, target);
         VectorType   next            = search.u;
         ContactState next_state      = search.state;
         problem.friction_coefficient = coefficient;
-        report =
-          mixed_algorithm_2({next, next_state, steps, search.progress});
+        report = mixed_algorithm_2({next, next_state, steps, search.progress});
         problem.friction_coefficient = target;
         if (report.converged)
           {

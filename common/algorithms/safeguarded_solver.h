@@ -96,7 +96,7 @@ namespace Friction
 
     SolverReport attempt(const std::string      &name,
                          MonotoneMultigrid<dim> &with_iteration,
-                         const SolverSettings   &with_settings,
+                         const CoulombSettings  &with_settings,
                          const Search           &search) const;
 
     SolverReport mixed_algorithm_2(const Search &search);

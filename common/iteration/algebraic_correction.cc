@@ -9,16 +9,15 @@ namespace Friction
 {
   template <int dim>
   AlgebraicCorrection<dim>::AlgebraicCorrection(
-    const DiscreteProblem<dim> &problem,
-    const CoarsestMethod        method)
+    const DiscreteProblem<dim> &problem, const CoarsestMethod method)
     : problem(problem)
     , current(problem.constraints)
     , solver(method, dim)
   {
     const NodeBlockMatrix<dim> &leaf_matrix = problem.stiffness.blocks();
-    const auto                 &partitioner = *problem.constraints.partitioner();
-    const IndexSet              owned = partitioner.locally_owned_range();
-    const MPI_Comm              comm  = problem.communicator();
+    const auto    &partitioner = *problem.constraints.partitioner();
+    const IndexSet owned       = partitioner.locally_owned_range();
+    const MPI_Comm comm        = problem.communicator();
     rhs.reinit(owned, comm);
     solution.reinit(rhs);
 
@@ -92,7 +91,8 @@ namespace Friction
              ++e)
           {
             const unsigned int j = leaf_matrix.column(e);
-            NodeBlock<dim> block = current.truncated_block(i, leaf_matrix.block(e), j);
+            NodeBlock<dim>     block =
+              current.truncated_block(i, leaf_matrix.block(e), j);
             if (i == j)
               for (unsigned int c = 0; c < dim; ++c)
                 for (unsigned int r = 0; r < dim; ++r)

@@ -10,14 +10,14 @@ namespace Friction
 {
   /**
    * Solves the truncated linear problem $T(A+\omega'')T\,v=r$ on the leaf mesh
-   * as it stands, by AlgebraicSolver: the counterpart of TruncatedCorrection for meshes
-   * or materials whose coarse levels are of no help, such as cells a thousand
-   * times longer than wide.
+   * as it stands, by AlgebraicSolver: the counterpart of TruncatedCorrection
+   * for meshes or materials whose coarse levels are of no help, such as cells a
+   * thousand times longer than wide.
    *
    * With it a step of the iteration becomes one of Newton's method, between two
    * relaxations that keep it admissible and descending. It costs a
-   * factorisation, or many iterations of conjugate gradients, where TruncatedCorrection
-   * costs a few sweeps.
+   * factorisation, or many iterations of conjugate gradients, where
+   * TruncatedCorrection costs a few sweeps.
    */
   template <int dim>
   class AlgebraicCorrection : public Correction<dim>
@@ -27,8 +27,8 @@ namespace Friction
     AlgebraicCorrection(const DiscreteProblem<dim> &problem,
                         const CoarsestMethod        method);
 
-    std::size_t
-    update(const Linearization<dim> &linearization, const Iterate &x) override;
+    std::size_t update(const Linearization<dim> &linearization,
+                       const Iterate            &x) override;
 
     void apply(VectorType &v, const VectorType &r) override;
 

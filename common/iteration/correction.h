@@ -27,8 +27,8 @@ namespace Friction
     /** Follows the phases, and what else the correction wants to know of the
      * iterate @p x that has been linearised. Returns the number of block rows
      * of matrices that this process has computed anew. Collective. */
-    virtual std::size_t
-    update(const Linearization<dim> &linearization, const Iterate &x) = 0;
+    virtual std::size_t update(const Linearization<dim> &linearization,
+                               const Iterate            &x) = 0;
 
     /**
      * Computes a correction. Collective.

@@ -95,9 +95,8 @@ namespace Friction
 
     // Contact nodes have numbers of their own. Which of our ghosts is which of
     // them their owners tell; zero means that it is none.
-    NodeNumbering numbering(
-      NodeDistribution(contact.size(),
-                       leaf.distribution().shared_communicator()));
+    NodeNumbering       numbering(NodeDistribution(
+      contact.size(), leaf.distribution().shared_communicator()));
     std::vector<double> number(leaf.size(), 0.);
     for (unsigned int p = 0; p < contact.size(); ++p)
       number[contact[p].node] = 1. + numbering.distribution().global(p);
@@ -184,7 +183,7 @@ namespace Friction
           {
             const double bound =
               problem.effective_coefficient() * state.normal_force(p);
-            const auto   u_T   = tangential_components<dim>(node, x.u);
+            const auto   u_T = tangential_components<dim>(node, x.u);
             const double stiffness =
               trace<dim>(problem.stiffness.diagonal_block(node.node)) / dim;
             if (bound > 0 && !state.sticks(p) && !all_is_held &&
@@ -220,8 +219,8 @@ namespace Friction
               for (unsigned int t = 1; t < dim; ++t)
                 for (unsigned int d = 0; d < dim; ++d)
                   r.local_element(dim * node.node + d) -=
-                    problem.effective_coefficient() * state.normal_force(p) * u_T[t - 1] / norm *
-                    node.frame[t][d];
+                    problem.effective_coefficient() * state.normal_force(p) *
+                    u_T[t - 1] / norm * node.frame[t][d];
           }
     current.apply(r.begin());
   }

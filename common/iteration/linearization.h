@@ -64,15 +64,14 @@ namespace Friction
     void linearize_residual(VectorType &r, const Iterate &x) const;
 
     /**
-     * Cartesian bounds within which a correction of the iterate is admissible and
-     * causes no change of phase, (6.12). A half space $n\cdot v\le b$ is
+     * Cartesian bounds within which a correction of the iterate is admissible
+     * and causes no change of phase, (6.12). A half space $n\cdot v\le b$ is
      * replaced by the largest box of equal sides inside it that contains zero.
      * A sliding node may not move back beyond the line through $u_T=0$ that is
      * perpendicular to its slip; in two dimensions this is to say that $u_T$
      * keeps its sign.
      */
-    void
-    bounds(VectorType &lower, VectorType &upper, const Iterate &x) const;
+    void bounds(VectorType &lower, VectorType &upper, const Iterate &x) const;
 
   private:
     const DiscreteProblem<dim> &problem;

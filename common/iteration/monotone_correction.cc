@@ -17,9 +17,7 @@ namespace Friction
 
   template <int dim>
   MonotoneCorrection<dim>::MonotoneCorrection(
-    Levels<dim>       &levels,
-    const Cycle        cycle,
-    const unsigned int smoothing_steps)
+    Levels<dim> &levels, const Cycle cycle, const unsigned int smoothing_steps)
     : TruncatedCorrection<dim>(levels, cycle, smoothing_steps)
   {
     for (unsigned int k = 0; k < levels.n_correction_levels(); ++k)
@@ -72,11 +70,11 @@ namespace Friction
     std::vector<double> &bounds     = restricted[k];
     const auto           room = [&](const bool is_upper, const unsigned int i) {
       if (finer_last)
-        return is_upper ? leaf_upper.local_element(i) :
-                           -leaf_lower.local_element(i);
+        return is_upper ? leaf_upper.local_element(i)
+                                  : -leaf_lower.local_element(i);
       const double moved = correction[k + 1].local_element(i);
-      return is_upper ? upper[k + 1].local_element(i) - moved :
-                         moved - lower[k + 1].local_element(i);
+      return is_upper ? upper[k + 1].local_element(i) - moved
+                                : moved - lower[k + 1].local_element(i);
     };
 
     std::fill(bounds.begin(), bounds.end(), infinity);
@@ -143,7 +141,7 @@ namespace Friction
     const LevelMatrices<dim>   &matrices = levels.matrices();
     const NodeBlockMatrix<dim> &B        = matrices.matrix(k);
     double                     *c        = correction[k].begin();
-    const double *b = rhs[k].begin(), *lo = lower[k].begin(),
+    const double               *b = rhs[k].begin(), *lo = lower[k].begin(),
                  *up = upper[k].begin();
 
     const auto relax_node = [&](const unsigned int i) {
@@ -212,7 +210,7 @@ namespace Friction
     const MPI_Comm     comm     = levels.communicator();
     const unsigned int n_values = dim * levels.hierarchy().level(0).n_nodes();
     double            *c        = correction[0].begin();
-    const double *step = work[0].begin(), *r = defect[0].begin(),
+    const double      *step = work[0].begin(), *r = defect[0].begin(),
                  *lo = lower[0].begin(), *up = upper[0].begin();
     const auto clamp = [&](const unsigned int i, const double length) {
       return std::min(std::max(c[i] + length * step[i], lo[i]), up[i]);
@@ -265,8 +263,8 @@ namespace Friction
   MonotoneCorrection<dim>::solve_coarsest()
   {
     const PhaseScope   phase(levels.communicator(), SolverPhase::coarsest);
-    const unsigned int n_nodes  = levels.hierarchy().level(0).n_nodes();
-    const unsigned int n_values = dim * n_nodes;
+    const unsigned int n_nodes    = levels.hierarchy().level(0).n_nodes();
+    const unsigned int n_values   = dim * n_nodes;
     const NodeBlockMatrix<dim> &B = levels.matrices().matrix(0);
     double       *c = correction[0].begin(), *step = work[0].begin();
     double       *r  = defect[0].begin();

@@ -95,8 +95,7 @@ namespace Friction
 
   template <int dim>
   void
-  MonotoneSmoother<dim>::backward(Iterate           &x,
-                                  const unsigned int n_sweeps) const
+  MonotoneSmoother<dim>::backward(Iterate &x, const unsigned int n_sweeps) const
   {
     sweep(x, n_sweeps, true, false);
   }
@@ -150,8 +149,8 @@ namespace Friction
       /*with residual =*/!backwards,
       backwards,
       [&](const unsigned int stage, const unsigned int chunk) {
-        const bool update = x.updates_normal_forces &&
-          (stage > 0 || !trust_first_normal_forces);
+        const bool update =
+          x.updates_normal_forces && (stage > 0 || !trust_first_normal_forces);
         if (stage == n_sweeps)
           matrix.residual(x.residual.begin(),
                           f,
@@ -182,9 +181,7 @@ namespace Friction
   template <int dim>
   void
   MonotoneSmoother<dim>::relax_contact_node(
-    const unsigned int p,
-    Iterate           &x,
-    const bool         update_normal_force) const
+    const unsigned int p, Iterate &x, const bool update_normal_force) const
   {
     const NodeBlockMatrix<dim> &matrix = problem.stiffness.blocks();
     const ContactNode<dim>     &node   = problem.contact[p];

@@ -44,7 +44,7 @@ namespace Friction
      */
     explicit MonotoneSmoother(
       const DiscreteProblem<dim> &problem,
-      const LocalSolver local_solver = LocalSolver::secular_equation);
+      const LocalSolver           local_solver = LocalSolver::secular_equation);
     MonotoneSmoother(DiscreteProblem<dim> &&, const LocalSolver = {}) = delete;
 
     /**

@@ -1,7 +1,7 @@
-#include <common/parallel/owned_values.h>
-#include <common/parallel/reductions.h>
 #include <common/iteration/best_combination.h>
 #include <common/iteration/recombination.h>
+#include <common/parallel/owned_values.h>
+#include <common/parallel/reductions.h>
 
 #include <algorithm>
 #include <cmath>

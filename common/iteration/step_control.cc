@@ -74,8 +74,8 @@ namespace Friction
     // line search; it rather stops, and the relaxation decides how it goes on.
     whole                        = v;
     const unsigned int n_stopped = functional.keep_slip(v, x.u, x.state);
-    Products   products = products_along(v, x.residual, n_stopped);
-    const bool stopped  = products.n_changed > 0;
+    Products           products  = products_along(v, x.residual, n_stopped);
+    const bool         stopped   = products.n_changed > 0;
     if (stopped)
       {
         problem.stiffness.vmult(Av, v);

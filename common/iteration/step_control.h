@@ -89,11 +89,11 @@ namespace Friction
                    const Truncation<dim> &truncation) override;
 
   private:
-    const TrescaFunctional<dim>  &functional;
-    const DiscreteProblem<dim>   &problem;
-    const double                  largest_step;
-    Recombination<dim>            recombination;
-    VectorType                    Av, whole;
+    const TrescaFunctional<dim> &functional;
+    const DiscreteProblem<dim>  &problem;
+    const double                 largest_step;
+    Recombination<dim>           recombination;
+    VectorType                   Av, whole;
 
     // What the line search along v needs to know of its quadratic part, and a
     // number that is summed up in passing.
@@ -107,12 +107,10 @@ namespace Friction
                             const VectorType  &residual,
                             const unsigned int n_changed) const;
 
-    double minimize_within_obstacle(const Iterate    &x,
-                                    VectorType       &v);
+    double minimize_within_obstacle(const Iterate &x, VectorType &v);
 
-    double try_whole_correction(const Iterate &x,
-                                VectorType    &v,
-                                const double   length);
+    double
+    try_whole_correction(const Iterate &x, VectorType &v, const double length);
   };
 } // namespace Friction
 

@@ -1,5 +1,5 @@
-#include <common/parallel/reductions.h>
 #include <common/iteration/tresca_functional.h>
+#include <common/parallel/reductions.h>
 
 #include <algorithm>
 #include <array>

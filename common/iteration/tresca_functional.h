@@ -61,12 +61,12 @@ namespace Friction
                            const ContactState &state) const;
 
     /**
-     * The exact minimiser of $\hat J(u+\alpha v)$, u the iterate @p x, over $0\le\alpha\le$ @p
-     * largest, the obstacle being disregarded. The energy is convex along the
-     * line and smooth but for the points where a node comes to rest, so that
-     * regula falsi on the derivative, safeguarded by bisection, finds it.
-     * Several points are tried at a time, since with several processes each
-     * trial is a reduction. Collective.
+     * The exact minimiser of $\hat J(u+\alpha v)$, u the iterate @p x, over
+     * $0\le\alpha\le$ @p largest, the obstacle being disregarded. The energy is
+     * convex along the line and smooth but for the points where a node comes to
+     * rest, so that regula falsi on the derivative, safeguarded by bisection,
+     * finds it. Several points are tried at a time, since with several
+     * processes each trial is a reduction. Collective.
      *
      * @param slope      $(f - A u)\cdot v$, the decrease of the quadratic part.
      * @param curvature  $v^T A v$.

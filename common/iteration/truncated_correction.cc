@@ -5,9 +5,7 @@ namespace Friction
 {
   template <int dim>
   TruncatedCorrection<dim>::TruncatedCorrection(
-    Levels<dim>       &levels,
-    const Cycle        cycle,
-    const unsigned int smoothing_steps)
+    Levels<dim> &levels, const Cycle cycle, const unsigned int smoothing_steps)
     : levels(levels)
     , cycle_parameter(cycle == Cycle::V ? 1 : 2)
     , smoothing_steps(smoothing_steps)

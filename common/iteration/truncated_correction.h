@@ -35,8 +35,8 @@ namespace Friction
                         const Cycle        cycle,
                         const unsigned int smoothing_steps);
 
-    std::size_t
-    update(const Linearization<dim> &linearization, const Iterate &x) override;
+    std::size_t update(const Linearization<dim> &linearization,
+                       const Iterate            &x) override;
 
     void apply(VectorType &v, const VectorType &r) override;
 

@@ -20,8 +20,8 @@ namespace Friction
    * The leaf mesh with its hanging nodes is one space, the level meshes are
    * others; a node of one is the same vertex as a node of the other. For each
    * leaf node, @p finest_level is the finest level that has it as a node,
-   * called $\ell(p)$ below: that is where its residual enters the levels and where
-   * its correction is read off.
+   * called $\ell(p)$ below: that is where its residual enters the levels and
+   * where its correction is read off.
    *
    * The leaf space has its own smoother, the leading relaxation. Correction
    * levels are therefore only 0,...,n_levels()-2; the finest level merely
@@ -30,10 +30,11 @@ namespace Friction
    * With several processes a level has its own distribution, that of deal.II's
    * level degrees of freedom: a refined cell belongs to the process that owns
    * its first child. So the same vertex may belong to different processes on
-   * the leaf mesh and on a level, and a node's parents may be, too. What a process needs of
-   * others it numbers as ghosts: parents of its nodes, nodes of its leaf nodes,
-   * and nodes that the rows of its own nodes couple to. Which these are depends
-   * on the graph of the matrices, which is therefore found here.
+   * the leaf mesh and on a level, and a node's parents may be, too. What a
+   * process needs of others it numbers as ghosts: parents of its nodes, nodes
+   * of its leaf nodes, and nodes that the rows of its own nodes couple to.
+   * Which these are depends on the graph of the matrices, which is therefore
+   * found here.
    */
   template <int dim>
   class LevelHierarchy
@@ -201,10 +202,10 @@ namespace Friction
     private:
       static constexpr unsigned char hanging_bit = 0x80;
 
-      NodeNumbering                      nodes;
+      NodeNumbering                                      nodes;
       std::shared_ptr<const Utilities::MPI::Partitioner> layout;
-      std::vector<unsigned int>          leaf_nodes;
-      std::vector<LeafNode>              own;
+      std::vector<unsigned int>                          leaf_nodes;
+      std::vector<LeafNode>                              own;
       NodeWeights                        parent_weights, child_weights;
       NodeRanges                         relaxed;
       std::vector<char>                  edge;

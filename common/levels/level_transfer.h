@@ -18,10 +18,11 @@ namespace Friction
    * and step-75. Between the leaf mesh and the levels it is a class of our own,
    * for two reasons. deal.II's copy_to_mg() puts the residual of a node at the
    * boundary of a refined region on the coarser of its levels, where its
-   * function is smooth; here it enters on the finest level $\ell(p)$ that has the
-   * node, since the level matrices are Galerkin products of the leaf matrix,
-   * and the leaf function is among those of level $\ell(p)$. And what moves up and
-   * down here is not $Au$ but a truncated residual, zero at nodes that hang.
+   * function is smooth; here it enters on the finest level $\ell(p)$ that has
+   * the node, since the level matrices are Galerkin products of the leaf
+   * matrix, and the leaf function is among those of level $\ell(p)$. And what
+   * moves up and down here is not $Au$ but a truncated residual, zero at nodes
+   * that hang.
    *
    * Vectors of a level have the layout of Level::partitioner(). Of those of
    * deal.II's functions only owned values are read and written, so that the

@@ -36,10 +36,9 @@ namespace Friction
      * @param problem      on its leaf mesh; kept by reference, as is what it
      *                     refers to.
      */
-    Levels(
-      const DoFHandler<dim>      &dof_handler,
-      const DiscreteProblem<dim> &problem,
-      const CoarsestMethod coarsest_method = CoarsestMethod::automatic);
+    Levels(const DoFHandler<dim>      &dof_handler,
+           const DiscreteProblem<dim> &problem,
+           const CoarsestMethod coarsest_method = CoarsestMethod::automatic);
 
     const LevelHierarchy<dim> &
     hierarchy() const

@@ -9,8 +9,8 @@ namespace Friction
    * A majorant of what a node couples to at other processes. If all processes
    * change their nodes by $\delta$ at once, each with the values of the others
    * as they were, the energy contains terms $\delta_i^TA_{ij}\delta_j$ that
-   * no process has reckoned with, where $i$ and $j$ belong to different processes.
-   * With the singular value decomposition $A_{ij}=U\Sigma V^T$,
+   * no process has reckoned with, where $i$ and $j$ belong to different
+   * processes. With the singular value decomposition $A_{ij}=U\Sigma V^T$,
    * @f[ |\delta_i^TA_{ij}\delta_j| \le
    *     \tfrac12\delta_i^T(U\Sigma U^T)\delta_i +
    *     \tfrac12\delta_j^T(V\Sigma V^T)\delta_j, @f]

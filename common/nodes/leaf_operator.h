@@ -32,7 +32,7 @@ namespace Friction
      *                     numbers, owned nodes first, then ghosts.
      * @param constraints  gives the layout; not kept.
      */
-    LeafOperator(NodeBlockMatrix<dim>        &&blocks,
+    LeafOperator(NodeBlockMatrix<dim>       &&blocks,
                  const NodalConstraints<dim> &constraints);
 
     const NodeBlockMatrix<dim> &

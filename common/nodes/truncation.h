@@ -61,8 +61,8 @@ namespace Friction
 
     /** The truncated block $T_i A_{ij} T_j$ of a leaf block. */
     NodeBlock<dim> truncated_block(const unsigned int i,
-                            const double      *block,
-                            const unsigned int j) const;
+                                   const double      *block,
+                                   const unsigned int j) const;
 
     /** Both subspace and second derivative of a node agree with another's. */
     bool agrees(const Truncation &other, const unsigned int node) const;

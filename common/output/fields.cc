@@ -245,8 +245,8 @@ namespace Friction
 
   template <int dim>
   void
-  FieldWriter<dim>::write_level(const unsigned int      level,
-                                const LevelFields<dim> &fields,
+  FieldWriter<dim>::write_level(const unsigned int                     level,
+                                const LevelFields<dim>                &fields,
                                 const std::vector<ContactRecord<dim>> &contact)
   {
     write_body(level, fields);
@@ -265,10 +265,10 @@ namespace Friction
   FieldWriter<dim>::write_body(const unsigned int      level,
                                const LevelFields<dim> &fields)
   {
-    const Mapping<dim>    &mapping      = fields.mapping;
-    const DoFHandler<dim> &dof_handler  = fields.dof_handler;
-    const VectorType      &displacement = fields.displacement;
-    const Vector<float>   *cell_errors  = fields.cell_errors;
+    const Mapping<dim>              &mapping      = fields.mapping;
+    const DoFHandler<dim>           &dof_handler  = fields.dof_handler;
+    const VectorType                &displacement = fields.displacement;
+    const Vector<float>             *cell_errors  = fields.cell_errors;
     const VolumetricStrainField<dim> volumetric_strain(
       mapping, dof_handler, material.volumetric_strain(), displacement);
     const Stresses<dim> stresses(material, volumetric_strain);

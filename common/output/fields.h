@@ -125,10 +125,9 @@ namespace Friction
                          const bool                  has_cells,
                          const MPI_Comm              communicator);
 
-    void
-    write_contact_boundary(const unsigned int                     level,
-                           const LevelFields<dim>                &fields,
-                           const std::vector<ContactRecord<dim>> &contact);
+    void write_contact_boundary(const unsigned int                     level,
+                                const LevelFields<dim>                &fields,
+                                const std::vector<ContactRecord<dim>> &contact);
 
     using TimesAndNames = std::vector<std::pair<double, std::string>>;
 

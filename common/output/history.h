@@ -89,9 +89,9 @@ namespace Friction
    */
   struct CycleRecord
   {
-    unsigned int level     = 0;
-    double       increment = 0.;
-    double       energy    = 0.;
+    unsigned int level       = 0;
+    double       increment   = 0.;
+    double       energy      = 0.;
     double       step_length = 0.;
 
     /// Number of degrees of freedom the coarse correction leaves out.

@@ -55,7 +55,7 @@ namespace Friction
     const DoFHandler<dim>       &dof_handler = discretization.dof_handler();
     const NodalConstraints<dim> &constraints = discretization.constraints();
     const ContactBoundary<dim>  &contact_boundary = discretization.contact();
-    LevelRecords<dim> records;
+    LevelRecords<dim>            records;
 
     records.costs         = report.costs;
     records.matrix_memory = report.matrix_memory;
@@ -124,12 +124,12 @@ namespace Friction
     for (const CycleInfo &info : report.cycles)
       {
         CycleRecord row;
-        row.level     = level;
-        row.increment = info.increment;
-        row.energy    = info.energy;
+        row.level       = level;
+        row.increment   = info.increment;
+        row.energy      = info.energy;
         row.step_length = info.step_length;
-        row.truncated = info.truncated;
-        row.residual  = info.residual;
+        row.truncated   = info.truncated;
+        row.residual    = info.residual;
         records.cycles.push_back(row);
       }
     for (const double change : report.outer_changes)

@@ -1,9 +1,9 @@
 #ifndef friction_output_level_records_h
 #define friction_output_level_records_h
 
-#include <common/output/history.h>
 #include <common/algorithms/solver_report.h>
 #include <common/discretization/discretization.h>
+#include <common/output/history.h>
 
 #include <string>
 #include <vector>

@@ -13,8 +13,8 @@ namespace Friction
   /**
    * Writes a file beside its final place and renames it when it is complete.
    * Renaming within a directory is atomic: a program that opens the final
-   * name finds the previous file or the new one, never half of either, also if the
-   * run is killed in between or the disk is full.
+   * name finds the previous file or the new one, never half of either, also if
+   * the run is killed in between or the disk is full.
    *
    * @p write_to gets the temporary name, in the same directory as
    * @p final_name and with the same ending. If it throws, or if the file cannot

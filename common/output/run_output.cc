@@ -123,10 +123,10 @@ namespace Friction
   RunOutput<dim>::nothing_to_refine(const ContactState &state)
   {
     the_console.note(
-      Utilities::MPI::sum(state.n_contact(), communicator) > 0 ?
-        "Nothing is left to refine: there is no error." :
-        "Nothing is left to refine: there is no error, and no node in "
-        "contact. If there should be, start with a finer mesh.");
+      Utilities::MPI::sum(state.n_contact(), communicator) > 0
+        ? "Nothing is left to refine: there is no error."
+        : "Nothing is left to refine: there is no error, and no node in "
+          "contact. If there should be, start with a finer mesh.");
   }
 
 

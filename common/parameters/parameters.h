@@ -1,9 +1,9 @@
 #ifndef friction_parameters_parameters_h
 #define friction_parameters_parameters_h
 
-#include <common/parameters/wrong_number.h>
 #include <common/parameters/material.h>
 #include <common/parameters/solver_settings.h>
+#include <common/parameters/wrong_number.h>
 
 #include <limits>
 #include <map>

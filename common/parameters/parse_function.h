@@ -1,8 +1,8 @@
 #ifndef friction_parameters_parse_function_h
 #define friction_parameters_parse_function_h
 
-#include <common/parameters/wrong_number.h>
 #include <common/parameters/parameters.h>
+#include <common/parameters/wrong_number.h>
 
 #include <deal.II/base/function_parser.h>
 #include <deal.II/base/utilities.h>

@@ -65,8 +65,9 @@ namespace Friction
   };
 
   /**
-   * Everything that can be chosen about the nonlinear solver. The defaults are
-   * those of the step programs' parameter files.
+   * What a scene file may choose about the solver. It is read where parts are
+   * made and put together, as in make_correction(); a part itself is told what
+   * it has to know, and nothing else.
    */
   struct SolverSettings
   {
@@ -88,8 +89,8 @@ namespace Friction
     double inner_tolerance = 1e-9;
 
     /// Whether to stop Algorithm 3 as soon as its error is small compared with
-    /// that of the discretisation; see DiscretizationStop, which then sets the
-    /// error at which to stop, an energy norm. Zero: by the inner tolerance.
+    /// that of the discretisation. DiscretizationStop computes the error at
+    /// which to stop, an energy norm; zero: only the inner tolerance counts.
     bool   stop_at_discretization = false;
     double energy_tolerance       = 0.;
 
@@ -118,12 +119,8 @@ namespace Friction
     unsigned int mixed_outer_iterations = 0;
 
     /// Whether to try other iterations where one is getting nowhere; see
-    /// SafeguardedSolver, which then sets the next entry.
+    /// SafeguardedSolver.
     bool safeguards = true;
-
-    /// Whether to end an iteration that would not come to its end within the
-    /// maximum number of cycles; see MultigridResult::stalls().
-    bool gives_up_early = false;
   };
 } // namespace Friction
 
