@@ -66,7 +66,7 @@ namespace Friction
   MonotoneCorrection<dim>::prepare_visits(const unsigned int k)
   {
     const auto          &level      = levels.hierarchy().level(k);
-    const bool           finer_last = (k + 2 >= levels.hierarchy().n_levels());
+    const bool           finer_last = (k + 2 == levels.hierarchy().n_levels());
     std::vector<double> &bounds     = restricted[k];
     const auto           room = [&](const bool is_upper, const unsigned int i) {
       if (finer_last)
@@ -77,10 +77,11 @@ namespace Friction
                                 : moved - lower[k + 1].local_element(i);
     };
 
+    const NodeWeights &children =
+      finer_last ? level.leaf_children() : level.children();
     std::fill(bounds.begin(), bounds.end(), infinity);
     for (unsigned int node = 0; node < level.n_local_nodes(); ++node)
-      for (auto child = level.children().begin(node);
-           child != level.children().end(node);
+      for (auto child = children.begin(node); child != children.end(node);
            ++child)
         for (unsigned int d = 0; d < dim; ++d)
           for (unsigned int side = 0; side < 2; ++side)
@@ -92,7 +93,7 @@ namespace Friction
       for (unsigned int d = 0; d < dim; ++d)
         {
           double            *bound = &bounds[4 * (dim * own.node + d)];
-          const unsigned int leaf  = dim * own.leaf + d;
+          const unsigned int leaf  = dim * own.leaf.number() + d;
           bound[2] = std::min(bound[2], leaf_upper.local_element(leaf));
           bound[3] = std::min(bound[3], -leaf_lower.local_element(leaf));
         }

@@ -103,10 +103,9 @@ namespace Friction
     for (unsigned int k = 0; k < levels.size(); ++k)
       {
         const IndexSet &owned = dof_handler.locally_owned_mg_dofs(k);
-        levels[k].nodes       = NodeNumbering(
-          NodeDistribution(
-            owned.n_elements() / dim,
-            constraints.numbering().distribution().shared_communicator()));
+        levels[k].nodes       = NodeNumbering(NodeDistribution(
+          owned.n_elements() / dim,
+          constraints.numbering().distribution().shared_communicator()));
         Assert(owned.n_elements() == 0 ||
                  owned.nth_index_in_set(0) ==
                    dim * levels[k].nodes.distribution().global(0),
@@ -282,7 +281,7 @@ namespace Friction
           const unsigned int node = level.nodes.add(number - 1);
           (is_finest ? finest_nodes : nodes_below)[i] = node;
           if (is_finest && i < constraints.n_owned_nodes())
-            level.own.push_back({i, node});
+            level.own.push_back({LeafNode(i), node});
         }
   }
 
@@ -302,13 +301,12 @@ namespace Friction
     const bool finer_last = (k + 2 == levels.size());
     const auto n_owned    = level.n_nodes();
 
-    level.leaf_nodes.assign(level.n_local_nodes(),
-                            numbers::invalid_unsigned_int);
+    level.leaf_nodes.assign(level.n_local_nodes(), LeafNode());
     for (unsigned int i = 0; i < constraints.n_owned_nodes(); ++i)
       if (!constraints.is_hanging(i) &&
           (finest_levels[i] == k || finest_levels[i] == k + 1) &&
-          node_of_leaf(k, i) != numbers::invalid_unsigned_int)
-        level.leaf_nodes[node_of_leaf(k, i)] = i;
+          node_of_leaf(k, LeafNode(i)) != numbers::invalid_unsigned_int)
+        level.leaf_nodes[node_of_leaf(k, LeafNode(i))] = LeafNode(i);
 
     if (k + 1 == levels.size() && levels.size() > 1)
       {
@@ -334,15 +332,14 @@ namespace Friction
     for (unsigned int row = 0; row < n_rows; ++row)
       {
         collector.begin_row();
-        const unsigned int i = level.leaf_nodes[row];
-        if (i != numbers::invalid_unsigned_int)
-          for (std::size_t e = leaf_matrix.row_begin(i);
-               e < leaf_matrix.row_end(i);
+        if (const LeafNode leaf = level.leaf_nodes[row]; leaf.exists())
+          for (std::size_t e = leaf_matrix.row_begin(leaf.number());
+               e < leaf_matrix.row_end(leaf.number());
                ++e)
             {
-              const unsigned int j = leaf_matrix.column(e);
-              if (std::min(finest_levels[i], finest_levels[j]) == k)
-                collector.add(node_of_leaf(k, j));
+              const LeafNode other(leaf_matrix.column(e));
+              if (std::min(finest_level(leaf), finest_level(other)) == k)
+                collector.add(node_of_leaf(k, other));
             }
 
         const auto add_parents = [&](const unsigned int finer_node) {
@@ -451,8 +448,7 @@ namespace Friction
     sort_and_make_unique(level.coupled);
     level.owned_pattern    = owned_pattern;
     level.outgoing_pattern = outgoing_pattern;
-    level.leaf_nodes.resize(level.n_local_nodes(),
-                            numbers::invalid_unsigned_int);
+    level.leaf_nodes.resize(level.n_local_nodes());
   }
 
 
@@ -522,11 +518,13 @@ namespace Friction
     const NodeWeights &parents = finer.parent_weights;
 
     std::vector<std::vector<NodeWeights::Entry>> rows;
-    if (k + 2 == levels.size())
+    level.has_leaf_children = (k + 2 == levels.size());
+    if (level.has_leaf_children)
       {
         rows.resize(constraints.n_owned_nodes());
         for (const auto &own : finer.own)
-          rows[own.leaf].assign(parents.begin(own.node), parents.end(own.node));
+          rows[own.leaf.number()].assign(parents.begin(own.node),
+                                         parents.end(own.node));
       }
     else
       {
@@ -609,8 +607,7 @@ namespace Friction
           if (own.node >= n_owned)
             level.transferred.push_back(own.node);
         sort_and_make_unique(level.transferred);
-        level.leaf_nodes.resize(level.n_local_nodes(),
-                                numbers::invalid_unsigned_int);
+        level.leaf_nodes.resize(level.n_local_nodes());
       }
   }
 

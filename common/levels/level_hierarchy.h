@@ -1,6 +1,7 @@
 #ifndef friction_levels_level_hierarchy_h
 #define friction_levels_level_hierarchy_h
 
+#include <common/nodes/leaf_node.h>
 #include <common/nodes/nodal_constraints.h>
 #include <common/nodes/node_block_matrix.h>
 #include <common/nodes/node_weights.h>
@@ -40,15 +41,16 @@ namespace Friction
   class LevelHierarchy
   {
   public:
-    /** One level; all node numbers not said to be leaf nodes are local numbers
-     * of level nodes, owned nodes first, then ghosts. */
+    /** One level; numbers of nodes that are not of type LeafNode are local
+     * numbers of level nodes, owned nodes first, then ghosts. */
     class Level
     {
     public:
       /** A node of the leaf mesh and the level node at the same vertex. */
-      struct LeafNode
+      struct OwnNode
       {
-        unsigned int leaf, node;
+        LeafNode     leaf;
+        unsigned int node;
       };
 
       /** Rows of a matrix of which another process computes a part. */
@@ -88,9 +90,8 @@ namespace Friction
       }
 
       /** The owned leaf node at a node's vertex if there is one, and if this
-       * level is its finest or the one below; otherwise invalid_unsigned_int.
-       */
-      unsigned int
+       * level is its finest or the one below; otherwise none. */
+      LeafNode
       leaf_node(const unsigned int node) const
       {
         return leaf_nodes[node];
@@ -98,7 +99,7 @@ namespace Friction
 
       /** The owned leaf nodes whose finest level this is, and which do not
        * hang. Their level nodes may be ghosts. */
-      const std::vector<LeafNode> &
+      const std::vector<OwnNode> &
       own_nodes() const
       {
         return own;
@@ -113,11 +114,21 @@ namespace Friction
       }
 
       /** The transpose: which owned nodes of the next finer level each node,
-       * ghosts included, has a share in. If the next finer level is the finest,
-       * these are leaf nodes. */
+       * ghosts included, has a share in. Not if that level is the finest, which
+       * has no unknowns of its own. */
       const NodeWeights &
       children() const
       {
+        Assert(!has_leaf_children, dealii::ExcInvalidState());
+        return child_weights;
+      }
+
+      /** If the next finer level is the finest: the same, but with numbers of
+       * leaf nodes. */
+      const NodeWeights &
+      leaf_children() const
+      {
+        Assert(has_leaf_children, dealii::ExcInvalidState());
         return child_weights;
       }
 
@@ -204,8 +215,9 @@ namespace Friction
 
       NodeNumbering                                      nodes;
       std::shared_ptr<const Utilities::MPI::Partitioner> layout;
-      std::vector<unsigned int>                          leaf_nodes;
-      std::vector<LeafNode>                              own;
+      std::vector<LeafNode>                              leaf_nodes;
+      std::vector<OwnNode>                               own;
+      bool                               has_leaf_children = false;
       NodeWeights                        parent_weights, child_weights;
       NodeRanges                         relaxed;
       std::vector<char>                  edge;
@@ -242,19 +254,19 @@ namespace Friction
 
     /** The finest level $\ell$ that a leaf node is a node of. */
     unsigned int
-    finest_level(const unsigned int leaf_node) const
+    finest_level(const LeafNode leaf_node) const
     {
-      return finest_levels[leaf_node];
+      return finest_levels[leaf_node.number()];
     }
 
     /** The level node at the vertex of a leaf node that does not hang, where
      * @p k is its finest level or the one below; invalid_unsigned_int if that
      * level does not have the vertex. */
     unsigned int
-    node_of_leaf(const unsigned int k, const unsigned int leaf_node) const
+    node_of_leaf(const unsigned int k, const LeafNode leaf_node) const
     {
-      return k == finest_levels[leaf_node] ? finest_nodes[leaf_node]
-                                           : nodes_below[leaf_node];
+      const unsigned int i = leaf_node.number();
+      return k == finest_levels[i] ? finest_nodes[i] : nodes_below[i];
     }
 
     std::size_t memory_consumption() const;

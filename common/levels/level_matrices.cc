@@ -1,5 +1,5 @@
-#include <common/nodes/interface_damping.h>
 #include <common/levels/level_matrices.h>
+#include <common/nodes/interface_damping.h>
 #include <common/parallel/phase_costs.h>
 #include <common/parallel/reductions.h>
 
@@ -210,26 +210,26 @@ namespace Friction
 
     const auto truncated_block =
       [&](const unsigned int i, const unsigned int j, const std::size_t e) {
-        NodeBlock<dim> block = truncation.truncated_block(i, leaf_matrix.block(e), j);
+        NodeBlock<dim> block =
+          truncation.truncated_block(i, leaf_matrix.block(e), j);
         if (i == j)
           for (unsigned int d = 0; d < dim * dim; ++d)
             block[d] += truncation.curvature(i)[d];
         return block;
       };
 
-    const unsigned int leaf = level.leaf_node(row);
-    if (leaf != numbers::invalid_unsigned_int)
-      for (std::size_t e = leaf_matrix.row_begin(leaf);
-           e < leaf_matrix.row_end(leaf);
+    if (const LeafNode leaf = level.leaf_node(row); leaf.exists())
+      for (std::size_t e = leaf_matrix.row_begin(leaf.number());
+           e < leaf_matrix.row_end(leaf.number());
            ++e)
         {
-          const unsigned int j = leaf_matrix.column(e);
+          const unsigned int i = leaf.number(), j = leaf_matrix.column(e);
           if (std::min(hierarchy.finest_level(leaf),
-                       hierarchy.finest_level(j)) != k)
+                       hierarchy.finest_level(LeafNode(j))) != k)
             continue;
           double *target =
-            B.block(begin + position[hierarchy.node_of_leaf(k, j)]);
-          if (truncation.is_identity(leaf) && truncation.is_identity(j))
+            B.block(begin + position[hierarchy.node_of_leaf(k, LeafNode(j))]);
+          if (truncation.is_identity(i) && truncation.is_identity(j))
             {
               const double *block = leaf_matrix.block(e);
               for (unsigned int d = 0; d < dim * dim; ++d)
@@ -237,7 +237,7 @@ namespace Friction
             }
           else
             {
-              const NodeBlock<dim> block = truncated_block(leaf, j, e);
+              const NodeBlock<dim> block = truncated_block(i, j, e);
               for (unsigned int d = 0; d < dim * dim; ++d)
                 target[d] += block[d];
             }
@@ -261,10 +261,10 @@ namespace Friction
           for (unsigned int d = 0; d < dim * dim; ++d)
             finer_sums[slot][d] += weight * block[d];
         };
-        for (auto child = level.children().begin(row);
-             child != level.children().end(row);
-             ++child)
-          if (k + 2 < hierarchy.n_levels())
+        if (k + 2 < hierarchy.n_levels())
+          for (auto child = level.children().begin(row);
+               child != level.children().end(row);
+               ++child)
             {
               const NodeBlockMatrix<dim> &finer = matrices[k + 1];
               for (std::size_t e = finer.row_begin(child->node);
@@ -272,7 +272,10 @@ namespace Friction
                    ++e)
                 add(child->weight, finer.column(e), finer.block(e));
             }
-          else
+        else
+          for (auto child = level.leaf_children().begin(row);
+               child != level.leaf_children().end(row);
+               ++child)
             {
               const unsigned int i = child->node;
               for (std::size_t e = leaf_matrix.row_begin(i);
@@ -280,9 +283,10 @@ namespace Friction
                    ++e)
                 {
                   const unsigned int j = leaf_matrix.column(e);
-                  if (hierarchy.finest_level(j) != k + 1)
+                  if (hierarchy.finest_level(LeafNode(j)) != k + 1)
                     continue;
-                  const unsigned int column = hierarchy.node_of_leaf(k + 1, j);
+                  const unsigned int column =
+                    hierarchy.node_of_leaf(k + 1, LeafNode(j));
                   if (truncation.is_identity(i) && truncation.is_identity(j))
                     add(child->weight, column, leaf_matrix.block(e));
                   else
@@ -394,9 +398,9 @@ namespace Friction
     const auto         mark = [&](const unsigned int i, const unsigned int j) {
       if (i >= n_owned)
         return;
-      const unsigned int k =
-        std::min(hierarchy.finest_level(i), hierarchy.finest_level(j));
-      rows[k].push_back(hierarchy.node_of_leaf(k, i));
+      const unsigned int k = std::min(hierarchy.finest_level(LeafNode(i)),
+                                      hierarchy.finest_level(LeafNode(j)));
+      rows[k].push_back(hierarchy.node_of_leaf(k, LeafNode(i)));
     };
     for (const unsigned int i : changed_nodes)
       if (i < n_owned)

@@ -65,12 +65,12 @@ namespace Friction
   {
     double            *values  = level.begin();
     const unsigned int n_owned = dim * hierarchy.level(k).n_nodes();
-    std::fill(values + n_owned,
-              values + dim * hierarchy.level(k).n_local_nodes(),
-              0.);
+    std::fill(
+      values + n_owned, values + dim * hierarchy.level(k).n_local_nodes(), 0.);
     for (const auto &own : hierarchy.level(k).own_nodes())
       for (unsigned int d = 0; d < dim; ++d)
-        values[dim * own.node + d] += leaf.local_element(dim * own.leaf + d);
+        values[dim * own.node + d] +=
+          leaf.local_element(dim * own.leaf.number() + d);
     ghosts_at_leaf_nodes[k].collect(values, dim, GhostExchange::Combine::add);
   }
 
@@ -86,7 +86,8 @@ namespace Friction
     ghosts_at_leaf_nodes[k].update(values, dim);
     for (const auto &own : hierarchy.level(k).own_nodes())
       for (unsigned int d = 0; d < dim; ++d)
-        leaf.local_element(dim * own.leaf + d) = values[dim * own.node + d];
+        leaf.local_element(dim * own.leaf.number() + d) =
+          values[dim * own.node + d];
   }
 
 

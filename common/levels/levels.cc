@@ -7,13 +7,11 @@ namespace Friction
                       const DiscreteProblem<dim> &problem,
                       const CoarsestMethod        coarsest_method)
     : problem(problem)
-    , level_hierarchy(dof_handler,
-                      problem.constraints,
-                      problem.stiffness.blocks())
+    , level_hierarchy(
+        dof_handler, problem.constraints, problem.stiffness.blocks())
     , level_transfer(dof_handler, level_hierarchy)
-    , level_matrices(problem.stiffness.blocks(),
-                     level_hierarchy,
-                     problem.constraints)
+    , level_matrices(
+        problem.stiffness.blocks(), level_hierarchy, problem.constraints)
     , coarsest(level_hierarchy, level_matrices, coarsest_method)
   {
     for (unsigned int k = 0; k < n_correction_levels(); ++k)

@@ -76,7 +76,7 @@ namespace
             fine_vector = 0.;
             for (const auto &own : fine.own_nodes())
               {
-                fine_node[own.leaf] = own.node;
+                fine_node[own.leaf.number()] = own.node;
                 for (unsigned int d = 0; d < dim; ++d)
                   fine_vector(dim * own.node + d) =
                     everything(dim * own.node + d);
@@ -84,6 +84,8 @@ namespace
             restricted = 0.;
             transfer.restrict_and_add(k, restricted, fine_vector);
           }
+        const NodeWeights &children =
+          finer_last ? coarse.leaf_children() : coarse.children();
         const auto number = [&](const unsigned int child) {
           return finer_last ? fine_node[child] : child;
         };
@@ -91,9 +93,7 @@ namespace
           for (unsigned int d = 0; d < dim; ++d)
             {
               double value = 0;
-              for (auto c = coarse.children().begin(i);
-                   c != coarse.children().end(i);
-                   ++c)
+              for (auto c = children.begin(i); c != children.end(i); ++c)
                 value += c->weight * fine_vector(dim * number(c->node) + d);
               difference =
                 std::max(difference, std::abs(value - restricted(dim * i + d)));
@@ -113,9 +113,7 @@ namespace
                ++p)
             weights.emplace(i, p->node, p->weight);
         for (unsigned int i = 0; i < coarse.n_nodes(); ++i)
-          for (auto c = coarse.children().begin(i);
-               c != coarse.children().end(i);
-               ++c)
+          for (auto c = children.begin(i); c != children.end(i); ++c)
             asymmetry += 1 - weights.erase({number(c->node), i, c->weight});
         asymmetry += weights.size();
       }
@@ -164,7 +162,8 @@ namespace
     bool finest_agrees = true, vertices_agree = true, edges_agree = true,
          flags_agree = true;
     for (unsigned int i = 0; i < n_leaf; ++i)
-      finest_agrees = finest_agrees && hierarchy.finest_level(i) == finest[i];
+      finest_agrees =
+        finest_agrees && hierarchy.finest_level(LeafNode(i)) == finest[i];
     for (unsigned int k = 0; k < n_levels; ++k)
       {
         const auto &level = hierarchy.level(k);
@@ -174,10 +173,11 @@ namespace
             {
               const auto it  = node_at.find({k, vertex_of_leaf[i]});
               vertices_agree = vertices_agree &&
-                hierarchy.node_of_leaf(k, i) ==
+                hierarchy.node_of_leaf(k, LeafNode(i)) ==
                   (it == node_at.end() ? numbers::invalid_unsigned_int
                                        : it->second) &&
-                (it == node_at.end() || level.leaf_node(it->second) == i);
+                (it == node_at.end() ||
+                 level.leaf_node(it->second).number() == i);
             }
         for (unsigned int i = 0; i < n_leaf; ++i)
           {
@@ -208,8 +208,8 @@ namespace
     for (unsigned int k = 0; k < n_levels; ++k)
       for (const auto &own : hierarchy.level(k).own_nodes())
         {
-          ++owned[own.leaf];
-          own_is_finest = own_is_finest && finest[own.leaf] == k;
+          ++owned[own.leaf.number()];
+          own_is_finest = own_is_finest && finest[own.leaf.number()] == k;
         }
     bool once = true;
     for (unsigned int i = 0; i < n_leaf; ++i)
@@ -267,7 +267,8 @@ namespace
           const unsigned int l = finest[i];
           never_refined =
             never_refined && touches_refined.count({l, vertex}) == 0;
-          for (const auto &master : *disc.hanging_nodes().get_constraint_entries(
+          for (const auto &master :
+               *disc.hanging_nodes().get_constraint_entries(
                  constraints.partitioner()->local_to_global(dim * i)))
             {
               const unsigned int m = constraints.node_of_dof(master.first);
