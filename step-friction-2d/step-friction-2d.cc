@@ -187,14 +187,12 @@ namespace StepFriction2d
   // already: which of them hang, which components are prescribed, and the
   // contact boundary. About the latter, all there is to know are the nodes of
   // the body that may touch the obstacle, the direction in which each of them
-  // would do so, and how far it is away, the gap; displacements are supposed to
-  // be small, so that these are those of the undeformed body. Each contact node
-  // also has the boundary measure that it stands for,
-  // $m_p=\int_{\Gamma_S}\lambda_p$. This is where the dual multipliers are, as
-  // far as a program has to know about them. Because of biorthogonality (6.9)
-  // the coefficients of the boundary stress are nodal forces, and friction is a
-  // sum over nodes (6.17); there is no mass matrix on the boundary to assemble,
-  // and no multiplier among the unknowns.
+  // would do so, how far it is away, and the boundary measure
+  // $m_p=\int_{\Gamma_S}\lambda_p$ that it stands for; displacements are
+  // supposed to be small, so that these are those of the undeformed body. There
+  // is no mass matrix on the boundary to assemble, and no multiplier among the
+  // unknowns: by biorthogonality (6.9) the coefficients of the boundary stress
+  // are nodal forces.
   //
   // What remains to be said is the bilinear form. It is that of linear
   // elasticity, for friction and contact do not appear in the stiffness matrix:
@@ -281,62 +279,36 @@ namespace StepFriction2d
     const SolverSettings settings =
       stop.settings_for(discretization.dof_handler().n_dofs());
 
-    // <i>Part 1: the energy</i> that the others agree on, $\hat J$ of (6.8):
-    // $\frac12u^TAu-f^Tu$ and the work of friction $\sum_p\mathcal
-    // F\tau(p)\,|u_T(p)|$, over all $u$ with $u_n(p)\le g(p)$.
+    // <i>Part 1: the energy</i> $\hat J$ of (6.8), which the other parts agree on.
     const TrescaFunctional<dim> functional(problem);
 
     // <i>Part 2: the leading relaxation.</i> This is where the friction cone
-    // is, and nowhere else. When its turn comes, a contact node gets the
-    // displacement that minimises the energy with all other nodes held, (6.15);
-    // this is <code>MonotoneSmoother::relax_contact_node()</code>, and at its
-    // heart <code>LocalProblem::solve()</code>. Unless the node can leave the
-    // obstacle it has $u_n=g$, and the tangential force that would hold it at
-    // $u_T=0$ is compared with $\mathcal F\tau(p)$. Below the bound the node
-    // sticks. Otherwise it slides, with the force equal to the bound, (6.18).
-    // So right after its turn a node satisfies its law, with this $\tau(p)$,
-    // exactly, and violates it again as soon as a neighbour moves.
-    //
-    // With Algorithm 3 the bound is taken from the intermediate iterate just
-    // before the node is relaxed: $\tau(p)=\max(0,r_n(p))$ if it touches, zero
-    // otherwise, (6.19). With Algorithm 2 it is fixed, and the whole iteration
-    // is repeated until the forces it finds agree with those it was given,
-    // (6.11).
+    // is, and nowhere else: <code>MonotoneSmoother::relax_contact_node()</code>
+    // gives a node the displacement that minimises the energy with all other
+    // nodes held, (6.15), and at its heart is <code>LocalProblem::solve()</code>.
+    // Right after its turn a node satisfies its law, with this $\tau(p)$,
+    // exactly, and violates it again as soon as a neighbour moves. With
+    // Algorithm 3 $\tau(p)$ is that of (6.19); with Algorithm 2 it is fixed.
     const MonotoneSmoother<dim> smoother(problem, settings.local_solver);
 
     // <i>Part 3: phases, truncation, linearisation.</i> The phase of a node
-    // decides which directions $T_p$ are left to coarse functions: all at an
-    // open node, the tangent at a sliding one, none at a sticking one. On these
-    // the energy is smooth, and coarse levels can solve a linear problem. In two
-    // dimensions friction adds nothing to its matrix, for $|u_T|$ is piecewise
-    // linear: $\omega''=0$.
+    // decides which directions are left to coarse functions: all at an open
+    // node, the tangent at a sliding one, none at a sticking one.
     Linearization<dim> linearization(problem, settings.truncation);
 
     // <i>Part 4: the coarse correction.</i> <code>Levels</code> has all that is
-    // made once per mesh: the matrices $B_k$, Galerkin products of $T(A+\omega'')
-    // T$ with the interpolation between levels, their relaxation, the solver of
-    // the coarsest one, and deal.II's <code>MGTransferMatrixFree</code>, by
-    // which residuals come down and corrections go up. Truncation is in the
-    // matrices and, once on the way down and once on the way up, in the vectors
-    // of the leaf mesh; the interpolation is not changed. By default the
-    // correction is a <code>TruncatedCorrection</code>, one V-cycle, which may
-    // be as large as it likes. The bounds
-    // @f[ v_n(p)\le g(p)-u_n(p)\ \text{if open},\qquad
-    //     v_T(p)\cdot u_T(p)/|u_T(p)|\ge-|u_T(p)|\ \text{if sliding} @f]
-    // of (6.12) are observed by a <code>MonotoneCorrection</code> only.
+    // made once per mesh: the matrices $B_k$, their relaxation, the solver of the
+    // coarsest one, and deal.II's <code>MGTransferMatrixFree</code>, by which
+    // residuals come down and corrections go up. Truncation is in the matrices
+    // and, once on the way down and once on the way up, in the vectors of the
+    // leaf mesh; the interpolation is not changed.
     Levels<dim> levels(discretization.dof_handler(),
                        problem,
                        settings.coarsest_method);
     const auto  correction = make_correction(levels, problem, settings);
 
-    // <i>Part 5: projection and line search.</i> First the correction is
-    // combined with the step before, in the way of conjugate gradients,
-    // $v\leftarrow c_0v+c_1(u-u_{\text{old}})$ with the smallest energy of the
-    // linearised problem (<code>Recombination</code>). Nodes that it would take
-    // inside the obstacle are projected back to it, nodes that it would take
-    // back beyond where they slid from stop there. Then $\alpha$ is the exact
-    // minimiser of $\hat J(u+\alpha v)$: the energy never rises for given
-    // $\tau$.
+    // <i>Part 5: projection and line search</i>, along the best combination of
+    // the correction and the step before.
     const auto step_control = make_step_control(functional, settings);
 
     // Put together, they are one step from a smoothed iterate to the next, and
@@ -352,18 +324,13 @@ namespace StepFriction2d
     // energy norm and relative to $u$, is at most the inner tolerance.
     // Increments prove little, for a method that stalls has small ones as well.
     // So the solver then computes $f-Au$ from scratch and with it the
-    // <i>certificate</i>: by how much any node violates equilibrium,
-    // non-penetration, the sign of the normal force, complementarity, the
-    // friction cone, or the direction of slip, forces relative to the largest
-    // nodal force and lengths to the largest displacement or gap. Without a
+    // <i>certificate</i>, by how much any node violates its laws. Without a
     // small certificate <code>report.converged</code> is false.
     //
     // Should the iteration get nowhere, which much friction or very long cells
     // can bring about, <code>SafeguardedSolver</code> exchanges one of the
-    // parts after the other: shorter steps, corrections that do without coarse
-    // levels, Algorithm 2 with mixed normal forces; at last it approaches the
-    // coefficient of friction from below. Levels and matrices stay the same.
-    // What it had to do, the console says; in most scenes it is nothing.
+    // parts after the other; levels and matrices stay the same. What it had to
+    // do, the console says; in most scenes it is nothing.
     SafeguardedSolver<dim> solver(problem, levels, iteration, settings);
     setup_seconds = discretization.setup_seconds() + timer.wall_time();
 
@@ -377,11 +344,9 @@ namespace StepFriction2d
     solve_seconds = timer.wall_time();
 
     // The iteration has not touched the values at hanging nodes, which we now
-    // interpolate. The contact tractions are $R(p)/m_p=-r(p)/m_p$ with $r=f-Au$
-    // the residual, at nodes where the state says that something is
-    // transferred, and exactly zero elsewhere; what rounding leaves of $r$ at
-    // open nodes must not look like a stress. Note that this is not
-    // $\sigma(u_h)n$, which jumps from cell to cell and is less accurate.
+    // interpolate. The contact tractions are $R(p)/m_p$ at nodes where the state
+    // says that something is transferred, and exactly zero elsewhere; what
+    // rounding leaves of $R$ at open nodes must not look like a stress.
     tractions =
       contact_tractions(discretization.contact(), report.residual, state);
     discretization.interpolate_hanging_nodes(displacement);
@@ -405,12 +370,10 @@ namespace StepFriction2d
   // is complete.
   //
   // The estimator knows where the error in the energy norm comes from. For the
-  // contact stresses themselves one may want more: a contact zone that is
-  // resolved equally well all over, which is what the table of the thesis has.
+  // contact stresses themselves one may want a contact zone that is resolved
+  // equally well all over, which is what the table of the thesis has.
   // Optionally, every cell at the boundary with a vertex in contact is refined
-  // besides. This has a price: it is not optimal for the energy, and the mesh
-  // gets coarse so quickly with depth that the pressure carries a slight
-  // ripple.
+  // besides.
   template <int dim>
   bool
   ContactProblem<dim>::mark_cells(const ErrorEstimate &estimate)
@@ -439,18 +402,9 @@ namespace StepFriction2d
   // that has not converged is recorded as well, to show what it looks like.
   //
   // <code>make_level_records()</code> turns nodal forces into pressures, sums
-  // of forces and half-widths of zones. Some of what it finds deserves a word.
-  // - The numbers of contact and sticky nodes count flags of the state, and are
-  //   what table 6.1 of the thesis lists.
-  // - The energy is $\hat J(u)$ of (6.8) at the final $\tau$. As $\tau$ and the
-  //   shape of the body differ from mesh to mesh, it need not fall with the
-  //   level. Within one Tresca problem it must never rise from cycle to cycle.
-  //   With Algorithm 3 it may, as $\tau$ and with it the functional changes.
-  // - Of each cycle we keep the relative increment, the energy of the smoothed
-  //   iterate, the step length of the coarse correction (which may exceed one),
-  //   the number of components that truncation has taken from coarse functions,
-  //   and the norm of the truncated residual. Once phases have settled, the
-  //   number of truncated components is constant, and the iteration is linear.
+  // of forces and half-widths of zones, and keeps of each cycle its increment,
+  // its energy, its step length and the number of components that truncation
+  // has taken from coarse functions. The results say how to read them.
   //
   // All of this is about the nodes of all processes. The history is rewritten
   // as a whole after each level and put in place by renaming. A run that is
