@@ -37,6 +37,16 @@ namespace Friction
     }
 
     /**
+     * What functions of deal.II's Trilinos matrices take: a reference before
+     * deal.II 9.5.
+     */
+#if DEAL_II_VERSION_GTE(9, 5, 0)
+    using CommunicatorOfTrilinos = const MPI_Comm;
+#else
+    using CommunicatorOfTrilinos = const MPI_Comm &;
+#endif
+
+    /**
      * What carries nodal vectors from a mesh to its refinement, also if both
      * are distributed over processes. In deal.II 9.7 there is one class for
      * all meshes; the one for distributed ones is on its way out.

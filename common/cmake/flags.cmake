@@ -28,6 +28,12 @@ endfunction()
 foreach(_variable DEAL_II_CXX_FLAGS DEAL_II_CXX_FLAGS_DEBUG DEAL_II_CXX_FLAGS_RELEASE)
   friction_drop_flags(${_variable} "^-g|^-O[0-9s]?g?$|compress-debug-sections|prefix-map")
 endforeach()
+# deal.II may not want to hear of these of itself, but we do of us.
+foreach(_variable DEAL_II_WARNING_FLAGS DEAL_II_CXX_FLAGS DEAL_II_CXX_FLAGS_DEBUG
+    DEAL_II_CXX_FLAGS_RELEASE)
+  friction_drop_flags(${_variable}
+    "^-Wno-(deprecated-declarations|unused-parameter|unused-variable)$")
+endforeach()
 # Where a sanitizer or valgrind finds something, they say in which line.
 string(APPEND DEAL_II_CXX_FLAGS_DEBUG " -O1 -g1")
 string(APPEND DEAL_II_CXX_FLAGS_RELEASE " -O2")
@@ -101,4 +107,54 @@ string(APPEND DEAL_II_LINKER_FLAGS " ${FRICTION_LINKER_FLAG}")
 if(_recorded AND NOT FRICTION_LINKER_${_recorded})
   message(STATUS
     "deal.II was linked with ${_recorded}, which does not work here; going on with ${_linker}.")
+endif()
+
+# Whether two functions of deal.II have the same name for this compiler as in deal.II's
+# library: see common/parallel/trilinos_symbols.cc.
+set(FRICTION_TRILINOS_SYMBOLS)
+if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # deal.II 9.4 defines its targets only when they are asked for.
+  if(DEAL_II_TARGET_CONFIG AND NOT DEAL_II_TARGET_CONFIG_INCLUDED)
+    include(${DEAL_II_TARGET_CONFIG})
+    set(DEAL_II_TARGET_CONFIG_INCLUDED TRUE)
+  endif()
+  set(_deal_ii dealii::dealii_release)
+  if(NOT TARGET ${_deal_ii})
+    set(_deal_ii ${DEAL_II_TARGET_RELEASE})
+  endif()
+  set(CMAKE_REQUIRED_LIBRARIES ${_deal_ii})
+  set(CMAKE_REQUIRED_INCLUDES ${DEAL_II_INCLUDE_DIRS})
+  set(CMAKE_REQUIRED_FLAGS "${DEAL_II_CXX_FLAGS}")
+  set(CMAKE_REQUIRED_LINK_OPTIONS ${FRICTION_LINKER_FLAG})
+  set(_declarations "
+    #include <deal.II/lac/dynamic_sparsity_pattern.h>
+    #include <deal.II/lac/la_parallel_vector.h>
+    #include <deal.II/lac/trilinos_sparse_matrix.h>
+    using namespace dealii;
+    void call(TrilinosWrappers::SparseMatrix &A, const IndexSet &rows,
+              const DynamicSparsityPattern &pattern,
+              LinearAlgebra::distributed::Vector<double> &x)")
+  # The first one has to be there, or there is something else that cannot be linked.
+  foreach(_call "CLEAR:A.clear()"
+      "REINIT:A.reinit(rows, rows, pattern, MPI_COMM_WORLD, false)"
+      "VMULT:A.vmult(x, x)")
+    string(REGEX REPLACE ":.*" "" _name ${_call})
+    string(REGEX REPLACE "^[^:]*:" "" _call ${_call})
+    check_cxx_source_compiles("${_declarations} {${_call};}
+      int main(int argc, char **) {
+        if (argc > 9) {
+          TrilinosWrappers::SparseMatrix A;
+          IndexSet rows;
+          DynamicSparsityPattern pattern;
+          LinearAlgebra::distributed::Vector<double> x;
+          call(A, rows, pattern, x);
+        }
+      }" FRICTION_HAS_TRILINOS_${_name})
+    if(FRICTION_HAS_TRILINOS_CLEAR AND NOT FRICTION_HAS_TRILINOS_${_name})
+      list(APPEND FRICTION_TRILINOS_SYMBOLS FRICTION_DEFINE_TRILINOS_${_name})
+    endif()
+  endforeach()
+  foreach(_variable LIBRARIES INCLUDES FLAGS LINK_OPTIONS)
+    unset(CMAKE_REQUIRED_${_variable})
+  endforeach()
 endif()

@@ -1,5 +1,4 @@
 #include <common/levels/algebraic_solver.h>
-#include <common/parallel/owned_values.h>
 #include <common/parallel/phase_costs.h>
 #include <common/parallel/reductions.h>
 
@@ -213,8 +212,8 @@ namespace Friction
         if (!(energy > 1e-12 * rMr) || !std::isfinite(energy))
           return Outcome::broken;
         const double length = rMr / energy;
-        add_owned(x, length, direction);
-        add_owned(residual, -length, image);
+        x.add(length, direction);
+        residual.add(-length, image);
 
         precondition(preconditioned, residual);
         project(preconditioned);
@@ -226,8 +225,7 @@ namespace Friction
           return Outcome::converged;
         if (last_iterations == maximum_iterations)
           return Outcome::slow;
-        scale_owned(direction, rMr / rMr_before);
-        add_owned(direction, 1., preconditioned);
+        direction.sadd(rMr / rMr_before, 1., preconditioned);
       }
   }
 

@@ -45,7 +45,7 @@ namespace Friction
   // Not in the namespace without a name, or a compiler that is given several
   // files as one warns of a member function's lambda that captures such an
   // object.
-  namespace internal
+  namespace LevelHierarchyTools
   {
     // The columns of one row, collected with the help of a marker, so that each
     // appears once.
@@ -77,7 +77,7 @@ namespace Friction
       unsigned int              row = 0;
       std::vector<unsigned int> last_row;
     };
-  } // namespace internal
+  } // namespace LevelHierarchyTools
 
 
 
@@ -326,8 +326,8 @@ namespace Friction
 
     auto owned_pattern    = std::make_shared<NodePattern>();
     auto outgoing_pattern = std::make_shared<NodePattern>();
-    internal::ColumnCollector collector;
-    const unsigned int        n_rows = level.n_local_nodes();
+    LevelHierarchyTools::ColumnCollector collector;
+    const unsigned int                   n_rows = level.n_local_nodes();
     owned_pattern->starts.reserve(n_owned + 1);
     for (unsigned int row = 0; row < n_rows; ++row)
       {

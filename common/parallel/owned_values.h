@@ -17,8 +17,10 @@ namespace Friction
   inline void
   scale_owned(OwnedValues &v, const double factor)
   {
+    AssertIsFinite(factor);
     double            *values = v.begin();
     const unsigned int n      = v.locally_owned_size();
+    DEAL_II_OPENMP_SIMD_PRAGMA
     for (unsigned int i = 0; i < n; ++i)
       values[i] *= factor;
   }
@@ -27,10 +29,12 @@ namespace Friction
   inline void
   add_owned(OwnedValues &u, const double factor, const OwnedValues &v)
   {
+    AssertIsFinite(factor);
     AssertDimension(u.locally_owned_size(), v.locally_owned_size());
     double            *values = u.begin();
     const double      *added  = v.begin();
     const unsigned int n      = u.locally_owned_size();
+    DEAL_II_OPENMP_SIMD_PRAGMA
     for (unsigned int i = 0; i < n; ++i)
       values[i] += factor * added[i];
   }

@@ -81,7 +81,9 @@ class Scratch:
             os.environ, PATH=f"{self._tools}:{os.environ['PATH']}",
             PYTHONDONTWRITEBYTECODE="1", MPLBACKEND="Agg",
             OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-            OMPI_MCA_rmaps_base_oversubscribe="1")
+            OMPI_MCA_rmaps_base_oversubscribe="1",
+            PMIX_MCA_mca_base_suppress_deprecated_warning="1",
+            PRTE_MCA_rmaps_default_mapping_policy=":oversubscribe")
         process = subprocess.Popen(
             ["bash", "-euo", "pipefail", "-c", nothing + block.text],
             cwd=self.root, env=environment, text=True, errors="replace",

@@ -1,7 +1,9 @@
 """The compiler's syntax check of all sources in a list of compile commands, one for
-each core at a time; prints how many of how many pass, and to stderr what the compiler says.
+each core at a time, in each of the ways in which they are compiled, with deal.II's
+assertions and without; prints how many of how many pass, and to stderr what the
+compiler says. Further sources are compiled as the first one in the list is.
 
-Usage: check_syntax.py compile_commands.json
+Usage: check_syntax.py compile_commands.json [SOURCE ...]
 """
 import concurrent.futures
 import json
@@ -22,15 +24,21 @@ def check(entry):
 
 def main():
     with open(sys.argv[1]) as file:
-        entries = {entry["file"]: entry for entry in json.load(file)
-                   if entry["file"].endswith(".cc")}
+        entries = {(entry["file"], " -DDEBUG" in entry["command"]): entry
+                   for entry in json.load(file) if entry["file"].endswith(".cc")}
+    first = next(iter(entries.values()))
+    for source in map(os.path.abspath, sys.argv[2:]):
+        entries[source, False] = dict(first, file=source, command=first[
+            "command"].replace(first["file"], source))
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         results = list(pool.map(check, entries.values()))
     for result in results:
         sys.stderr.write(result.stderr)
-    passed = sum(result.returncode == 0 for result in results)
-    print(f"{passed} of {len(results)}")
-    return 0 if passed == len(results) > 0 else 1
+    files = {file for file, _ in entries}
+    failed = {file for (file, _), result in zip(entries, results)
+              if result.returncode != 0}
+    print(f"{len(files - failed)} of {len(files)}")
+    return 0 if files and not failed else 1
 
 
 if __name__ == "__main__":

@@ -83,7 +83,7 @@ chroot "$root" /usr/bin/env -i HOME=/root LC_ALL=C.UTF-8 \
   DEBIAN_FRONTEND=noninteractive \
   bash /friction/tests/portability/in_root.sh "$compiler" "$tag" /friction/row ||
   echo "in_root.sh ended with an error" >&2
-[ -s "$result" ] || { echo "There is no result." >&2; exit 1; }
+[ -s "$result" ] || echo "| $suite | $compiler | ? | no | ? | none | none | nothing could be installed |" >"$result"
 cat "$result"
 
 # The row takes the place of the one that begins with the same two cells.
@@ -102,7 +102,7 @@ mv "$table.part" "$table"
 awk -F'|' '{
   n = split($8, word, " ")
   exit !($5 ~ /yes/ && $6 + 0 == 0 && $7 ~ /hertz, cylinder|–/ &&
-    $8 !~ /none|FAILED/ && word[n - 2] == word[n] && word[n] > 0)
+    $8 !~ /none/ && word[n - 2] == word[n] && word[n] > 0 && $9 ~ /^ *$/)
 }' "$result" || {
   echo "Not all is well; see $root/friction/*.log" >&2
   exit 1

@@ -4,7 +4,7 @@ In a debug tree everything has deal.II's assertions and is optimised all the sam
 but for the programs that studies run, which are those of release mode. In release
 mode nothing is left of either.
 
-With sanitizers everything is compiled with them. Each target of the list that CMake
+Deprecated functions are warned of. With sanitizers everything is compiled with them. Each target of the list that CMake
 gives has to be among what is compiled.
 
 Usage: check_compile_commands.py compile_commands.json Debug|Release SANITIZERS TARGET ...
@@ -41,6 +41,8 @@ def main():
         else:
             good = optimisation in ("-O1", "-Og") and "DEBUG" in defined \
                 and "NDEBUG" not in defined
+        if "-Wno-deprecated-declarations" in entry["command"]:
+            good = False
         if sanitizers and f"-fsanitize={sanitizers}" not in entry["command"]:
             good = False
         if not good:

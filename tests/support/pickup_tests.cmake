@@ -23,7 +23,7 @@ set(FRICTION_MPI_ENVIRONMENT
   PMIX_MCA_mca_base_suppress_deprecated_warning=1
   PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe)
 
-# label_test(name LABEL quick|full|studies|pages [PROCESSES n]): a test that was
+# label_test(name LABEL quick|full|studies|pages|build [PROCESSES n]): a test that was
 # added already. Its folder is the part of its name before the first slash. On more
 # than two processes it is never quick.
 function(label_test name)
@@ -74,6 +74,11 @@ function(pickup_tests)
   set(_found)
   get_property(_tests DIRECTORY PROPERTY TESTS)
   foreach(_test ${_tests})
+    # Since 9.5 deal.II builds a program that several tests need in a test of its own.
+    if(_test MATCHES "^test_dependency/")
+      label_test(${_test} LABEL build)
+      continue()
+    endif()
     string(REGEX REPLACE "^[^/]*/([^.]*)\\..*" "\\1" _name ${_test})
     set(_label quick)
     if(_name IN_LIST _pickup_FULL)
