@@ -25,21 +25,23 @@ ERRORS = [
     ("truncation in P", "common/levels/level_matrices.cc",
      "double *target = B.block(begin + position[p->node]);\n              for",
      "double *target = B.block(begin + position[p->node]);\n"
-     "              const unsigned int parent =\n"
-     "                p->node < level.n_nodes() ? level.leaf_node(p->node) :\n"
-     "                                            numbers::invalid_unsigned_int;\n"
-     "              if (parent != numbers::invalid_unsigned_int &&\n"
-     "                  !truncation.is_identity(parent))\n"
+     "              const LeafNode parent = p->node < level.n_nodes() ?\n"
+     "                level.leaf_node(p->node) : LeafNode();\n"
+     "              if (parent.exists() &&\n"
+     "                  !truncation.is_identity(parent.number()))\n"
      "                continue;\n"
      "              for",
      "truncated nodes inherit nothing from the finer level"),
-    ("restriction", "common/iteration/coarse_cycle.cc",
-     "sum[d] += child->weight * finer[dim * child->node + d];",
-     "sum[d] += (child->weight < 1. ? .5 : 1.) * finer[dim * child->node + d];",
-     "residuals in the middle of faces and cells are restricted with weight 1/2"),
+    ("restriction", "common/levels/level_transfer.cc",
+     "transfer.restrict_and_add(k, coarse, fine);",
+     "VectorType half(fine);\n"
+     "    for (unsigned int i = 0; i < half.locally_owned_size(); ++i)\n"
+     "      half.local_element(i) *= .5;\n"
+     "    transfer.restrict_and_add(k, coarse, half);",
+     "residuals are restricted with half of their weight"),
     ("normal forces lag", "common/iteration/monotone_smoother.cc",
-     "const bool update = what.update_normal_forces &&",
-     "const bool update = false && what.update_normal_forces &&",
+     "x.updates_normal_forces && (stage > 0",
+     "false && x.updates_normal_forces && (stage > 0",
      "the leading relaxation never updates the normal forces"),
     ("stale level matrix", "common/levels/level_matrices.cc",
      "mark(i, j);\n            mark(j, i);",
@@ -59,8 +61,9 @@ ERRORS = [
      "a sliding node is free in normal direction"),
     ("level", "common/levels/level_matrices.cc",
      "std::min(hierarchy.finest_level(leaf),\n"
-     "                       hierarchy.finest_level(j)) != k)",
-     "hierarchy.finest_level(leaf) != k || hierarchy.finest_level(j) != k)",
+     "                       hierarchy.finest_level(LeafNode(j))) != k)",
+     "hierarchy.finest_level(leaf) != k ||\n"
+     "              hierarchy.finest_level(LeafNode(j)) != k)",
      "couplings of nodes whose finest levels differ by one belong to no level"),
 ]
 
