@@ -74,7 +74,7 @@ namespace
             for (unsigned int t = 1; t < dim; ++t)
               {
                 if (p % 3 == 1)
-                  S::add(s.u, node, t, .3 * direction[t]);
+                  S::add(s.u, node, t, 3. * direction[t]);
                 S::add(s.r,
                        node,
                        t,
@@ -83,11 +83,11 @@ namespace
           }
       }
     // A prescribed node takes the largest force, 2, so that scales are known;
-    // the first node is moved by 1 off the obstacle for the same reason.
+    // the first node is moved by 4 off the obstacle for the same reason.
     S::add(s.u,
            contact[0],
            0,
-           contact[0].gap - 1. - normal_component(contact[0], s.u));
+           contact[0].gap - 4. - normal_component(contact[0], s.u));
     for (unsigned int i = 0; i < problem.constraints().n_owned_nodes(); ++i)
       if (problem.constraints().is_fixed(i) &&
           !problem.constraints().is_hanging(i))
@@ -123,7 +123,7 @@ namespace
                   std::string("zero for an exact solution, ") +
                     (coulomb ? "Coulomb" : "Tresca"));
 
-    // Scales: force 2, length 1.
+    // Scales: force 2, length 4.
     const double delta  = 1e-3;
     const auto   expect = [&](const std::string &name,
                             double Certificate::*const entry,
@@ -150,7 +150,7 @@ namespace
             }
         }
     });
-    expect("penetration", &Certificate::penetration, delta, [&](S &s) {
+    expect("penetration", &Certificate::penetration, delta / 4, [&](S &s) {
       S::add(s.u, sticking, 0, delta);
     });
     expect("tension", &Certificate::tension, delta / 2, [&](S &s) {
@@ -172,7 +172,11 @@ namespace
       for (unsigned int t = 1; t < dim; ++t)
         S::add(s.r, sticking, t, (factor - 1) * r_T[t - 1]);
     });
-    // The force points the wrong way; or it is too small.
+    // It slides, with too small a force, but not far; where it does slide, the
+    // force points the wrong way, or is too small.
+    expect("slip where it sticks", &Certificate::slip, delta / 4, [&](S &s) {
+      S::add(s.u, sticking, 1, delta);
+    });
     expect("slip direction",
            &Certificate::slip,
            friction * normal_component(sliding, exact.r),

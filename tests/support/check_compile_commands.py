@@ -4,8 +4,8 @@ In a debug tree everything has deal.II's assertions and is optimised all the sam
 but for the programs that studies run, which are those of release mode. In release
 mode nothing is left of either.
 
-Deprecated functions are warned of. With sanitizers everything is compiled with them. Each target of the list that CMake
-gives has to be among what is compiled.
+Deprecated functions are warned of. With sanitizers everything is compiled with
+them. Each target of the list that CMake gives has to be among what is compiled.
 
 Usage: check_compile_commands.py compile_commands.json Debug|Release SANITIZERS TARGET ...
 """
@@ -50,6 +50,9 @@ def main():
                          + ("" if "DEBUG" in defined else "no ") + "assertions")
     for kind, count in kinds.items():
         print(f"{count} files {kind}")
+    # A list of nothing is right in every respect.
+    if not targets:
+        wrong.append("CMake has given no targets")
     wrong += [f"{target}: not compiled" for target in sorted(missing)]
     if wrong:
         print("FAILED:", *wrong, sep="\n  ")
