@@ -14,11 +14,7 @@
 #include <deal.II/lac/full_matrix.h>
 
 // Its headers are named after the one subject each of them has, and its folders
-// build on one another: the discrete problem on a mesh
-// (<code>discretization</code>), the levels (<code>levels</code>), the five
-// parts of a step (<code>iteration</code>), the algorithms made of it
-// (<code>algorithms</code>), where to refine (<code>estimate</code>), and what
-// is written (<code>output</code>).
+// build on one another.
 #include <common/algorithms/contact_solver.h>
 #include <common/algorithms/discretization_stop.h>
 #include <common/algorithms/initial_guess.h>
@@ -279,16 +275,18 @@ namespace StepFriction2d
     const SolverSettings settings =
       stop.settings_for(discretization.dof_handler().n_dofs());
 
-    // <i>Part 1: the energy</i> $\hat J$ of (6.8), which the other parts agree on.
+    // <i>Part 1: the energy</i> $\hat J$ of (6.8), which the other parts agree
+    // on.
     const TrescaFunctional<dim> functional(problem);
 
     // <i>Part 2: the leading relaxation.</i> This is where the friction cone
     // is, and nowhere else: <code>MonotoneSmoother::relax_contact_node()</code>
     // gives a node the displacement that minimises the energy with all other
-    // nodes held, (6.15), and at its heart is <code>LocalProblem::solve()</code>.
-    // Right after its turn a node satisfies its law, with this $\tau(p)$,
-    // exactly, and violates it again as soon as a neighbour moves. With
-    // Algorithm 3 $\tau(p)$ is that of (6.19); with Algorithm 2 it is fixed.
+    // nodes held, (6.15), and at its heart is
+    // <code>LocalProblem::solve()</code>. Right after its turn a node satisfies
+    // its law, with this $\tau(p)$, exactly, and violates it again as soon as a
+    // neighbour moves. With Algorithm 3 $\tau(p)$ is that of (6.19); with
+    // Algorithm 2 it is fixed.
     const MonotoneSmoother<dim> smoother(problem, settings.local_solver);
 
     // <i>Part 3: phases, truncation, linearisation.</i> The phase of a node
@@ -297,15 +295,14 @@ namespace StepFriction2d
     Linearization<dim> linearization(problem, settings.truncation);
 
     // <i>Part 4: the coarse correction.</i> <code>Levels</code> has all that is
-    // made once per mesh: the matrices $B_k$, their relaxation, the solver of the
-    // coarsest one, and deal.II's <code>MGTransferMatrixFree</code>, by which
-    // residuals come down and corrections go up. Truncation is in the matrices
-    // and, once on the way down and once on the way up, in the vectors of the
-    // leaf mesh; the interpolation is not changed.
-    Levels<dim> levels(discretization.dof_handler(),
-                       problem,
-                       settings.coarsest_method);
-    const auto  correction = make_correction(levels, problem, settings);
+    // made once per mesh: the matrices $B_k$, their relaxation, the solver of
+    // the coarsest one, and deal.II's <code>MGTransferMatrixFree</code>, by
+    // which residuals come down and corrections go up. Truncation is in the
+    // matrices and, once on the way down and once on the way up, in the vectors
+    // of the leaf mesh; the interpolation is not changed.
+    Levels<dim> levels(
+      discretization.dof_handler(), problem, settings.coarsest_method);
+    const auto correction = make_correction(levels, problem, settings);
 
     // <i>Part 5: projection and line search</i>, along the best combination of
     // the correction and the step before.
@@ -344,9 +341,9 @@ namespace StepFriction2d
     solve_seconds = timer.wall_time();
 
     // The iteration has not touched the values at hanging nodes, which we now
-    // interpolate. The contact tractions are $R(p)/m_p$ at nodes where the state
-    // says that something is transferred, and exactly zero elsewhere; what
-    // rounding leaves of $R$ at open nodes must not look like a stress.
+    // interpolate. The contact tractions are $R(p)/m_p$ at nodes where the
+    // state says that something is transferred, and exactly zero elsewhere;
+    // what rounding leaves of $R$ at open nodes must not look like a stress.
     tractions =
       contact_tractions(discretization.contact(), report.residual, state);
     discretization.interpolate_hanging_nodes(displacement);
@@ -371,9 +368,8 @@ namespace StepFriction2d
   //
   // The estimator knows where the error in the energy norm comes from. For the
   // contact stresses themselves one may want a contact zone that is resolved
-  // equally well all over, which is what the table of the thesis has.
-  // Optionally, every cell at the boundary with a vertex in contact is refined
-  // besides.
+  // equally well all over, as in table 6.1 of the thesis:
+  // <code>Refinement/Contact zone</code>.
   template <int dim>
   bool
   ContactProblem<dim>::mark_cells(const ErrorEstimate &estimate)
@@ -406,14 +402,11 @@ namespace StepFriction2d
   // its energy, its step length and the number of components that truncation
   // has taken from coarse functions. The results say how to read them.
   //
-  // All of this is about the nodes of all processes. The history is rewritten
-  // as a whole after each level and put in place by renaming. A run that is
-  // killed leaves all levels that were complete.
+  // The history is rewritten as a whole after each level and put in place by
+  // renaming. A run that is killed leaves all levels that were complete.
   //
   // Some scenes know their solution. Orders of convergence make sense if the
-  // width of the mesh is halved everywhere; a patch test, whose solution is
-  // linear, has none, for there a method without penalty is exact up to
-  // rounding and the tolerance of the solver.
+  // width of the mesh is halved everywhere.
   template <int dim>
   void
   ContactProblem<dim>::record_level(const unsigned int   level,
@@ -442,31 +435,20 @@ namespace StepFriction2d
   // @sect4{ContactProblem::run}
 
   // The loop over levels. It ends when the mesh is fine enough, or when a level
-  // could not be solved: then the certificate says by how much its last iterate
-  // violates which law, and the program must not pretend otherwise.
-  //
-  // Before it starts, the scene may have something to say, for example that the
-  // coefficient of friction is above Eck's bound. There we do not give up,
-  // since in practice many scenes have a solution. But this is not known, and
-  // if there are several, another algorithm or another initial guess may
-  // legitimately lead elsewhere.
+  // could not be solved; the certificate says by how much which law is violated.
   template <int dim>
   bool
   ContactProblem<dim>::run(const Start start)
   {
-    if (!scene.warning().empty())
-      output.console().warning(scene.warning());
-
     for (unsigned int level = make_first_mesh(start);; ++level)
       {
         assemble();
         solve(level);
 
-        // The estimate is needed for adaptive refinement, except on the last
-        // level. By default it is computed there, too, to know the error of
-        // what has been found. A solution that is better than its mesh is a
-        // waste of time: with <code>Inner tolerance = discretisation</code> the
-        // next one will be stopped when its own error is small compared with
+        // The estimate is needed for adaptive refinement. By default it is
+        // computed on the last level, too, to know the error of what has been
+        // found. With <code>Inner tolerance = discretisation</code> the next
+        // solution will be stopped when its own error is small compared with
         // that of the mesh, and this is where we learn about the latter.
         const bool last = level >= parameters.refinement.levels ||
           discretization.dof_handler().n_dofs() >=
@@ -482,10 +464,9 @@ namespace StepFriction2d
         record_level(level, estimate);
 
         // A level without a certified solution is the end: what is wrong on
-        // this mesh would only be interpolated to the next one. The certificate
-        // tells which law is violated. By then everything has been tried that
-        // the solver knows. If the first mesh is the one that fails, a coarser
-        // one may give it a better guess to start from.
+        // this mesh would only be interpolated to the next one. If the first
+        // mesh is the one that fails, a coarser one may give it a better guess
+        // to start from.
         if (!report.converged)
           {
             output.add_failure(level, report);
@@ -497,19 +478,16 @@ namespace StepFriction2d
         // Nested iteration: the displacement and the contact tractions are
         // interpolated to the refined mesh as they are. Tractions rather than
         // nodal forces, because a force belongs to a mesh, and halves when the
-        // mesh is refined. The flags of contact and stick are not transferred:
-        // a node that has come to lie at the obstacle or inside starts in
-        // contact, and the first sweep decides anew. The guess is worth having:
-        // with it the number of cycles does not grow with the level.
-        refine_mesh(*triangulation,
-                    discretization,
-                    {&displacement, &tractions});
+        // mesh is refined. The flags of contact and stick are not transferred;
+        // the first sweep decides anew. The guess is worth having: with it the
+        // number of cycles does not grow with the level.
+        refine_mesh(
+          *triangulation, discretization, {&displacement, &tractions});
 
         // This is the moment for a checkpoint, if the scene wants any: a mesh
         // and two vectors on it are all that the next level needs of those
-        // before. What has been recorded so far is added, so that a run
-        // continued with <code>--restart</code> ends with the same table and
-        // the same files as if it had never been interrupted.
+        // before. With what has been recorded so far, a run continued with
+        // <code>--restart</code> ends with the same files as any other.
         output.save_checkpoint(level + 1,
                                *triangulation,
                                discretization.dof_handler(),
@@ -522,18 +500,17 @@ namespace StepFriction2d
 
 // @sect3{The <code>main</code> function}
 
-// A scene file, then entries of it that are to be different this time.
-// Whatever is wrong with them is said in one sentence, and the exit status is
-// part of the result; see <code>run_program()</code>.
+// A scene file, then entries of it that are to be different this time. The exit
+// status is part of the result; see <code>run_program()</code>.
 int
 main(int argc, char *argv[])
 {
   return Friction::run_program(
     argc,
     argv,
-    "step-friction-2d",
-    "two",
-    "hertz.prm 'Contact/Friction coefficient=0.05'",
+    {"step-friction-2d",
+     "two",
+     "hertz.prm 'Contact/Friction coefficient=0.05'"},
     [](const Friction::Parameters &parameters, const Friction::Start start) {
       return StepFriction2d::ContactProblem<2>(parameters).run(start);
     });

@@ -18,6 +18,7 @@ namespace Friction
     , bilinear_form(form ? form : elasticity<dim>(the_scene.material()))
     , triangulation(make_triangulation<dim>(communicator))
     , the_discretization(the_scene, *triangulation)
+    , stop(the_parameters.solver)
     , contact_state(0, false)
   {}
 
@@ -84,7 +85,10 @@ namespace Friction
     VectorType         solution;
     ContactState       state(0, false);
     const SolverReport report =
-      solve_with(the_parameters.solver, solution, state, progress);
+      solve_with(stop.settings_for(the_discretization.dof_handler().n_dofs()),
+                 solution,
+                 state,
+                 progress);
     accept(solution, state, report);
     return last_report;
   }
@@ -109,10 +113,34 @@ namespace Friction
 
 
   template <int dim>
-  ErrorEstimate
-  NestedIteration<dim>::estimate() const
+  bool
+  NestedIteration<dim>::wants_estimate() const
   {
-    return estimate_contact_error(the_discretization, u, contact_stresses);
+    return the_parameters.refinement.estimate_error ||
+      (the_parameters.refinement.strategy == RefinementStrategy::adaptive &&
+       !is_last());
+  }
+
+
+
+  template <int dim>
+  ErrorEstimate
+  NestedIteration<dim>::estimate()
+  {
+    const ErrorEstimate result =
+      estimate_contact_error(the_discretization, u, contact_stresses);
+    add_estimate(result.total, the_discretization.dof_handler().n_dofs());
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  NestedIteration<dim>::add_estimate(
+    const double estimated_error, const dealii::types::global_dof_index n_dofs)
+  {
+    stop.add_estimate(estimated_error, n_dofs);
   }
 
 

@@ -2,6 +2,7 @@
 #define friction_algorithms_nested_iteration_h
 
 #include <common/algorithms/contact_solver.h>
+#include <common/algorithms/discretization_stop.h>
 #include <common/discretization/discretization.h>
 #include <common/estimate/residual_estimator.h>
 
@@ -35,8 +36,9 @@ namespace Friction
      * that of level @p level. The initial guess is zero; see guess(). */
     void begin_on_level(const unsigned int level);
 
-    /** Solves on this mesh with the settings of the parameters, and accepts the
-     * solution. */
+    /** Solves on this mesh with the settings of the parameters, not better than
+     * the estimate of the mesh before makes sensible if they say so, and
+     * accepts the solution. */
     const SolverReport &solve(const Progress &progress = {});
 
     /** The same with other settings, and leaves the iteration over the meshes
@@ -55,8 +57,16 @@ namespace Friction
                 const ContactState &state,
                 const SolverReport &report);
 
-    /** Of the accepted solution. */
-    ErrorEstimate estimate() const;
+    /** Whether the parameters want this mesh to have an estimate. */
+    bool wants_estimate() const;
+
+    /** Of the accepted solution; the next mesh will know it, too. */
+    ErrorEstimate estimate();
+
+    /** The same that has been found before, on the last mesh of a run that is
+     * continued. */
+    void add_estimate(const double                          estimated_error,
+                      const dealii::types::global_dof_index n_dofs);
 
     /** Whether the parameters do not want a finer mesh than this. */
     bool is_last() const;
@@ -170,8 +180,9 @@ namespace Friction
     const CellForm<dim> bilinear_form;
 
     std::unique_ptr<parallel::distributed::Triangulation<dim>> triangulation;
-    Discretization<dim> the_discretization;
-    unsigned int        the_level = 0;
+    Discretization<dim>     the_discretization;
+    DiscretizationStop<dim> stop;
+    unsigned int            the_level = 0;
 
     VectorType   guessed_displacement, guessed_tractions;
     VectorType   u, contact_stresses;

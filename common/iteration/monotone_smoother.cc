@@ -67,7 +67,9 @@ namespace Friction
             pseudo_inverse<dim>(block, 1e-10 * trace<dim>(block.data()));
         }
 
-    schedule = SweepSchedule<dim>(matrix, ordinary);
+    ordinary_nodes =
+      std::make_unique<GaussSeidel<dim>>(matrix, inverses, ordinary);
+    const SweepSchedule<dim> &schedule = ordinary_nodes->schedule();
     first_contact.assign(schedule.n_chunks() + 1, 0);
     for (const ContactNode<dim> &p : contact)
       ++first_contact[schedule.chunk_of(p.node) + 1];
@@ -88,7 +90,7 @@ namespace Friction
                                  const unsigned int n_sweeps,
                                  const bool trust_first_normal_forces) const
   {
-    sweep(x, n_sweeps, false, trust_first_normal_forces);
+    sweep(x, {n_sweeps, /*backwards =*/false}, trust_first_normal_forces);
   }
 
 
@@ -97,7 +99,7 @@ namespace Friction
   void
   MonotoneSmoother<dim>::backward(Iterate &x, const unsigned int n_sweeps) const
   {
-    sweep(x, n_sweeps, true, false);
+    sweep(x, {n_sweeps, /*backwards =*/true}, false);
   }
 
 
@@ -106,29 +108,20 @@ namespace Friction
   // the sweeps.
   template <int dim>
   void
-  MonotoneSmoother<dim>::sweep(Iterate           &x,
-                               const unsigned int n_sweeps,
-                               const bool         backwards,
-                               const bool trust_first_normal_forces) const
+  MonotoneSmoother<dim>::sweep(Iterate      &x,
+                               const Sweeps &sweeps,
+                               const bool    trust_first_normal_forces) const
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::leading_sweeps);
-    const NodeBlockMatrix<dim> &matrix = problem.stiffness.blocks();
-    const double               *f      = problem.forces.begin();
-    double                     *u      = x.u.begin();
+    const NodeBlockMatrix<dim> &matrix    = problem.stiffness.blocks();
+    const SweepSchedule<dim>   &schedule  = ordinary_nodes->schedule();
+    const bool                  backwards = sweeps.backwards;
+    const double               *f         = problem.forces.begin();
+    double                     *u         = x.u.begin();
     problem.stiffness.update_ghosts(x.u);
     if (!backwards && x.residual.size() != x.u.size())
       x.residual.reinit(x.u, true);
 
-    const auto relax_ordinary_nodes = [&](const unsigned int chunk) {
-      const NodeRanges &nodes = schedule.nodes(chunk);
-      for (unsigned int i = 0; i < nodes.size(); ++i)
-        relax_nodes<dim>(matrix,
-                         inverses,
-                         nodes[backwards ? nodes.size() - 1 - i : i],
-                         f,
-                         u,
-                         backwards);
-    };
     const auto relax_contact_nodes = [&](const unsigned int chunk,
                                          const bool         update) {
       const unsigned int begin = first_contact[chunk],
@@ -145,13 +138,12 @@ namespace Friction
     };
 
     schedule.run(
-      n_sweeps,
+      sweeps,
       /*with residual =*/!backwards,
-      backwards,
       [&](const unsigned int stage, const unsigned int chunk) {
         const bool update =
           x.updates_normal_forces && (stage > 0 || !trust_first_normal_forces);
-        if (stage == n_sweeps)
+        if (stage == sweeps.number)
           matrix.residual(x.residual.begin(),
                           f,
                           u,
@@ -160,11 +152,11 @@ namespace Friction
         else if (backwards)
           {
             relax_contact_nodes(chunk, update);
-            relax_ordinary_nodes(chunk);
+            ordinary_nodes->relax_chunk(chunk, f, u, backwards);
           }
         else
           {
-            relax_ordinary_nodes(chunk);
+            ordinary_nodes->relax_chunk(chunk, f, u, backwards);
             relax_contact_nodes(chunk, update);
           }
       },

@@ -4,10 +4,11 @@
 #include <common/contact/local_problem.h>
 #include <common/discretization/discrete_problem.h>
 #include <common/iteration/iterate.h>
-#include <common/nodes/sweep_schedule.h>
+#include <common/nodes/gauss_seidel.h>
 #include <common/parameters/solver_settings.h>
 
 #include <map>
+#include <memory>
 #include <vector>
 
 namespace Friction
@@ -46,6 +47,7 @@ namespace Friction
       const DiscreteProblem<dim> &problem,
       const LocalSolver           local_solver = LocalSolver::secular_equation);
     MonotoneSmoother(DiscreteProblem<dim> &&, const LocalSolver = {}) = delete;
+    MonotoneSmoother(const MonotoneSmoother &)                        = delete;
 
     /**
      * Forward sweeps over all nodes that can move, ascending.
@@ -71,10 +73,10 @@ namespace Friction
     }
 
   private:
-    const DiscreteProblem<dim>    &problem;
-    std::vector<NodeBlock<dim>>    inverses;
-    std::vector<LocalProblem<dim>> local_problems;
-    SweepSchedule<dim>             schedule;
+    const DiscreteProblem<dim>       &problem;
+    std::vector<NodeBlock<dim>>       inverses;
+    std::vector<LocalProblem<dim>>    local_problems;
+    std::unique_ptr<GaussSeidel<dim>> ordinary_nodes;
 
     // Diagonal blocks of contact nodes where they had to be enlarged.
     std::map<unsigned int, NodeBlock<dim>> damped_diagonals;
@@ -83,10 +85,9 @@ namespace Friction
     // permutation by_chunk.
     std::vector<unsigned int> first_contact, by_chunk;
 
-    void sweep(Iterate           &x,
-               const unsigned int n_sweeps,
-               const bool         backwards,
-               const bool         trust_first_normal_forces) const;
+    void sweep(Iterate      &x,
+               const Sweeps &sweeps,
+               const bool    trust_first_normal_forces) const;
 
     void relax_contact_node(const unsigned int p,
                             Iterate           &x,

@@ -143,7 +143,7 @@ namespace Friction
                                   VectorType        *defect_after)
   {
     levels.relax(
-      k, correction[k], rhs[k], backwards, smoothing_steps, defect_after);
+      k, correction[k], rhs[k], {smoothing_steps, backwards}, defect_after);
   }
 
 

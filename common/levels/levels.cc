@@ -17,7 +17,9 @@ namespace Friction
     for (unsigned int k = 0; k < n_correction_levels(); ++k)
       {
         const auto &level = level_hierarchy.level(k);
-        schedules.emplace_back(level_matrices.matrix(k), level.relaxed_nodes());
+        relaxations.emplace_back(level_matrices.matrix(k),
+                                 level_matrices.inverse_diagonals(k),
+                                 level.relaxed_nodes());
         coupled.emplace_back(level.numbering(), level.coupled_ghosts());
       }
   }
@@ -39,20 +41,15 @@ namespace Friction
   Levels<dim>::relax(const unsigned int k,
                      VectorType        &c,
                      const VectorType  &b,
-                     const bool         backwards,
-                     const unsigned int n_sweeps,
+                     const Sweeps      &sweeps,
                      VectorType        *defect)
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::coarse_sweeps);
-    gauss_seidel_sweeps<dim>(schedules[k],
-                             level_matrices.matrix(k),
-                             level_matrices.inverse_diagonals(k),
-                             b.begin(),
-                             c.begin(),
-                             backwards,
-                             n_sweeps,
-                             coupled[k],
-                             defect != nullptr ? defect->begin() : nullptr);
+    relaxations[k].run(sweeps,
+                       b.begin(),
+                       c.begin(),
+                       coupled[k],
+                       defect != nullptr ? defect->begin() : nullptr);
   }
 
 

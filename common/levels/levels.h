@@ -6,7 +6,7 @@
 #include <common/levels/level_hierarchy.h>
 #include <common/levels/level_matrices.h>
 #include <common/levels/level_transfer.h>
-#include <common/nodes/sweep_schedule.h>
+#include <common/nodes/gauss_seidel.h>
 #include <common/parallel/ghost_exchange.h>
 
 #include <vector>
@@ -103,20 +103,19 @@ namespace Friction
     void relax(const unsigned int k,
                VectorType        &c,
                const VectorType  &b,
-               const bool         backwards,
-               const unsigned int n_sweeps,
+               const Sweeps      &sweeps,
                VectorType        *defect = nullptr);
 
     std::size_t memory_consumption() const;
 
   private:
-    const DiscreteProblem<dim>     &problem;
-    const LevelHierarchy<dim>       level_hierarchy;
-    const LevelTransfer<dim>        level_transfer;
-    LevelMatrices<dim>              level_matrices;
-    CoarsestSolver<dim>             coarsest;
-    std::vector<SweepSchedule<dim>> schedules;
-    std::vector<GhostExchange>      coupled;
+    const DiscreteProblem<dim>   &problem;
+    const LevelHierarchy<dim>     level_hierarchy;
+    const LevelTransfer<dim>      level_transfer;
+    LevelMatrices<dim>            level_matrices;
+    CoarsestSolver<dim>           coarsest;
+    std::vector<GaussSeidel<dim>> relaxations;
+    std::vector<GhostExchange>    coupled;
   };
 } // namespace Friction
 

@@ -99,49 +99,6 @@ namespace Friction
 
 
 
-  template <int dim>
-  void
-  relax_nodes(const NodeBlockMatrix<dim>                  &A,
-              const std::vector<NodeBlock<dim>>           &inverse_diagonal,
-              const std::pair<unsigned int, unsigned int> &nodes,
-              const double                                *b,
-              double                                      *x,
-              const bool                                   backwards)
-  {
-    const auto relax = [&](const unsigned int i) {
-      const NodeValue<dim> product = A.row_times(i, x);
-      NodeValue<dim>       defect;
-      for (int d = 0; d < dim; ++d)
-        defect[d] = b[dim * i + d] - product[d];
-      const NodeValue<dim> correction =
-        times<dim>(inverse_diagonal[i].data(), defect.data());
-      for (int d = 0; d < dim; ++d)
-        x[dim * i + d] += correction[d];
-    };
-
-    if (!backwards)
-      for (unsigned int i = nodes.first; i < nodes.second; ++i)
-        relax(i);
-    else
-      for (unsigned int i = nodes.second; i-- > nodes.first;)
-        relax(i);
-  }
-
-
-
   template class NodeBlockMatrix<2>;
   template class NodeBlockMatrix<3>;
-
-  template void relax_nodes(const NodeBlockMatrix<2> &,
-                            const std::vector<NodeBlock<2>> &,
-                            const std::pair<unsigned int, unsigned int> &,
-                            const double *,
-                            double *,
-                            const bool);
-  template void relax_nodes(const NodeBlockMatrix<3> &,
-                            const std::vector<NodeBlock<3>> &,
-                            const std::pair<unsigned int, unsigned int> &,
-                            const double *,
-                            double *,
-                            const bool);
 } // namespace Friction

@@ -165,23 +165,6 @@ namespace Friction
       ranges.emplace_back(node, node + 1);
   }
 
-  /**
-   * Block Gauss-Seidel for A x = b over the nodes of a range, in ascending
-   * order or, backwards, in descending order.
-   * @param inverse_diagonal  one block per row: the (pseudo-)inverse of the
-   *                          diagonal block; a zero block leaves its node
-   * alone.
-   */
-  template <int dim>
-  void relax_nodes(const NodeBlockMatrix<dim>        &A,
-                   const std::vector<NodeBlock<dim>> &inverse_diagonal,
-                   const std::pair<unsigned int, unsigned int> &nodes,
-                   const double                                *b,
-                   double                                      *x,
-                   const bool                                   backwards);
-
-
-
   // The innermost loop of everything, hence inline. The compiler's own vector
   // type makes each column of a block one instruction in two dimensions; in
   // three it takes two rows at once, and the third on its own. Each column has

@@ -52,63 +52,6 @@ namespace Friction
 
 
 
-  template <int dim>
-  void
-  gauss_seidel_sweeps(const SweepSchedule<dim>          &schedule,
-                      const NodeBlockMatrix<dim>        &A,
-                      const std::vector<NodeBlock<dim>> &inverse_diagonal,
-                      const double                      *b,
-                      double                            *x,
-                      const bool                         backwards,
-                      const unsigned int                 n_sweeps,
-                      GhostExchange                     &ghosts,
-                      double                            *residual)
-  {
-    schedule.run(
-      n_sweeps,
-      residual != nullptr,
-      backwards,
-      [&](const unsigned int stage, const unsigned int c) {
-        if (stage == n_sweeps)
-          A.residual(
-            residual, b, x, schedule.chunk(c).first, schedule.chunk(c).second);
-        else
-          {
-            const NodeRanges &nodes = schedule.nodes(c);
-            for (unsigned int i = 0; i < nodes.size(); ++i)
-              relax_nodes<dim>(A,
-                               inverse_diagonal,
-                               nodes[backwards ? nodes.size() - 1 - i : i],
-                               b,
-                               x,
-                               backwards);
-          }
-      },
-      ghosts,
-      x);
-  }
-
-
-
   template class SweepSchedule<2>;
   template class SweepSchedule<3>;
-
-  template void gauss_seidel_sweeps(const SweepSchedule<2> &,
-                                    const NodeBlockMatrix<2> &,
-                                    const std::vector<NodeBlock<2>> &,
-                                    const double *,
-                                    double *,
-                                    const bool,
-                                    const unsigned int,
-                                    GhostExchange &,
-                                    double *);
-  template void gauss_seidel_sweeps(const SweepSchedule<3> &,
-                                    const NodeBlockMatrix<3> &,
-                                    const std::vector<NodeBlock<3>> &,
-                                    const double *,
-                                    double *,
-                                    const bool,
-                                    const unsigned int,
-                                    GhostExchange &,
-                                    double *);
 } // namespace Friction

@@ -9,6 +9,13 @@
 
 namespace Friction
 {
+  /** How often to sweep over the nodes, and in which order. */
+  struct Sweeps
+  {
+    unsigned int number;
+    bool         backwards;
+  };
+
   /**
    * Runs several relaxation sweeps through a matrix while reading it from
    * memory only once.
@@ -44,20 +51,19 @@ namespace Friction
                   const unsigned int          chunk_size = 128);
 
     /**
-     * Runs @p n_sweeps sweeps, and one more stage if @p with_residual is set,
-     * each over all chunks in ascending or descending order. That last stage is
-     * anything that reads neighbours and changes nothing.
+     * Runs sweeps, and one more stage if @p with_residual is set, each over
+     * all chunks in ascending or descending order. That last stage is anything
+     * that reads neighbours and changes nothing.
      * @param work    called as work(stage, chunk).
      * @param ghosts  exchanges what the sweeps change.
      * @param x       which has to have valid ghosts, and has on return.
      */
     template <typename Work>
-    void run(const unsigned int n_sweeps,
-             const bool         with_residual,
-             const bool         backwards,
-             const Work        &work,
-             GhostExchange     &ghosts,
-             double            *x) const;
+    void run(const Sweeps  &sweeps,
+             const bool     with_residual,
+             const Work    &work,
+             GhostExchange &ghosts,
+             double        *x) const;
 
     unsigned int
     n_chunks() const
@@ -101,36 +107,19 @@ namespace Friction
 
 
 
-  /**
-   * Several Gauss-Seidel sweeps over the nodes of a schedule, and then, if
-   * @p residual is not null, the residual b - A x of all rows; see
-   * relax_nodes(). The ghosts of @p x must be valid, and are on return.
-   */
-  template <int dim>
-  void gauss_seidel_sweeps(const SweepSchedule<dim>          &schedule,
-                           const NodeBlockMatrix<dim>        &A,
-                           const std::vector<NodeBlock<dim>> &inverse_diagonal,
-                           const double                      *b,
-                           double                            *x,
-                           const bool                         backwards,
-                           const unsigned int                 n_sweeps,
-                           GhostExchange                     &ghosts,
-                           double *residual = nullptr);
-
-
-
   template <int dim>
   template <typename Work>
   void
-  SweepSchedule<dim>::run(const unsigned int n_sweeps,
-                          const bool         with_residual,
-                          const bool         backwards,
-                          const Work        &work,
-                          GhostExchange     &ghosts,
-                          double            *x) const
+  SweepSchedule<dim>::run(const Sweeps  &sweeps,
+                          const bool     with_residual,
+                          const Work    &work,
+                          GhostExchange &ghosts,
+                          double        *x) const
   {
-    const unsigned int        n        = n_chunks();
-    const unsigned int        n_stages = n_sweeps + (with_residual ? 1 : 0);
+    const bool                backwards = sweeps.backwards;
+    const unsigned int        n_sweeps  = sweeps.number;
+    const unsigned int        n         = n_chunks();
+    const unsigned int        n_stages  = n_sweeps + (with_residual ? 1 : 0);
     std::vector<unsigned int> done(n_stages, 0);
 
     // Counted in the direction of the sweep, chunk number c is

@@ -200,7 +200,7 @@ namespace Friction
         write("level", &CycleRecord::level);
         write("increment", &CycleRecord::increment);
         write("energy", &CycleRecord::energy);
-        write("step_length", &CycleRecord::step_length);
+        write("damping", &CycleRecord::step_length);
         write("truncated", &CycleRecord::truncated);
         write("residual", &CycleRecord::residual);
       }

@@ -60,7 +60,10 @@ namespace Friction
              scene.contact_boundary_id(),
              parameters.output.format)
     , checkpoints(directory, communicator)
-  {}
+  {
+    if (!scene.warning().empty())
+      the_console.warning(scene.warning());
+  }
 
 
 
@@ -109,6 +112,34 @@ namespace Friction
 
   template <int dim>
   void
+  RunOutput<dim>::add_level(const NestedIteration<dim> &nest,
+                            const ErrorEstimate        &estimate)
+  {
+    const Discretization<dim> &discretization = nest.discretization();
+    LevelRecords<dim>          records        = make_level_records(nest.level(),
+                                                   discretization,
+                                                   nest.displacement(),
+                                                   nest.state(),
+                                                   nest.report());
+    records.level.estimated_error             = estimate.total;
+    records.level.setup_seconds               = nest.setup_seconds();
+    records.level.solve_seconds               = nest.solve_seconds();
+    add_level(
+      records, discretization, nest.displacement(), estimate.cell_errors);
+    if (const auto exact = nest.scene().exact_displacement())
+      add_exact_error(compute_exact_error(discretization.mapping(),
+                                          discretization.dof_handler(),
+                                          nest.scene().material(),
+                                          *exact,
+                                          nest.displacement()),
+                      parameters.refinement.strategy ==
+                        RefinementStrategy::uniform);
+  }
+
+
+
+  template <int dim>
+  void
   RunOutput<dim>::add_exact_error(const ExactError &error,
                                   const bool        with_order)
   {
@@ -140,6 +171,18 @@ namespace Friction
                      " within " + std::to_string(report.cycles.size()) +
                      " cycles. Certificate: " + report.certificate.describe() +
                      ".");
+  }
+
+
+
+  template <int dim>
+  void
+  RunOutput<dim>::add_end(const NestedIteration<dim> &nest)
+  {
+    if (!nest.report().converged)
+      add_failure(nest.level(), nest.report());
+    else if (!nest.is_last())
+      nothing_to_refine(nest.state());
   }
 
 
@@ -198,6 +241,19 @@ namespace Friction
                      triangulation,
                      dof_handler,
                      vectors);
+  }
+
+
+
+  template <int dim>
+  void
+  RunOutput<dim>::save_checkpoint(NestedIteration<dim> &nest) const
+  {
+    const std::vector<VectorType *> guess = nest.guess();
+    save_checkpoint(nest.level(),
+                    nest.mesh(),
+                    nest.discretization().dof_handler(),
+                    {guess.begin(), guess.end()});
   }
 
 

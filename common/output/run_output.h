@@ -1,6 +1,7 @@
 #ifndef friction_output_run_output_h
 #define friction_output_run_output_h
 
+#include <common/algorithms/nested_iteration.h>
 #include <common/estimate/exact_error.h>
 #include <common/output/checkpoint.h>
 #include <common/output/console.h>
@@ -32,7 +33,8 @@ namespace Friction
 
     /**
      * Creates the output directory, so that a run which cannot write anything
-     * fails in its first second and not after its last level.
+     * fails in its first second and not after its last level, and prints the
+     * warning that the scene may have.
      *
      * @param out      where the console of the first process prints.
      * @param version  of the program.
@@ -58,6 +60,11 @@ namespace Friction
                    const VectorType          &displacement,
                    const Vector<float>       &cell_errors);
 
+    /** The same of the solution that has been accepted on the mesh, with its
+     * exact error if the scene knows its solution. */
+    void add_level(const NestedIteration<dim> &nest,
+                   const ErrorEstimate        &estimate);
+
     /**
      * A remark on the error of a solution that is known.
      *
@@ -65,11 +72,14 @@ namespace Friction
      */
     void add_exact_error(const ExactError &error, const bool with_order);
 
-    /// A remark on a level that could not be solved.
     /** Says why the run ends before its last level: no cell has any error. */
     void nothing_to_refine(const ContactState &state);
 
+    /** The same: this level could not be solved. */
     void add_failure(const unsigned int level, const SolverReport &report);
+
+    /** One of the two, if the run ends here and this is not its last level. */
+    void add_end(const NestedIteration<dim> &nest);
 
     /**
      * Write a checkpoint, if the parameters want any.
@@ -81,6 +91,9 @@ namespace Friction
                          const Triangulation                   &triangulation,
                          const DoFHandler<dim>                 &dof_handler,
                          const std::vector<const VectorType *> &vectors) const;
+
+    /** The same for the mesh that has just been refined. */
+    void save_checkpoint(NestedIteration<dim> &nest) const;
 
     /**
      * Start from the last checkpoint: refines the coarse mesh as it was,

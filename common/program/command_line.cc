@@ -17,35 +17,34 @@ namespace Friction
   namespace
   {
     std::string
-    usage(const std::string &program,
-          const std::string &dimensions,
-          const std::string &example)
+    usage(const Program &program)
     {
-      return "Usage: " + program +
+      const std::string &name = program.name;
+      return "Usage: " + name +
         " SCENE.prm [--restart] [Section/Entry=value ...]\n"
         "       " +
-        program +
+        name +
         " --parameters   print all entries with defaults\n"
         "       " +
-        program +
+        name +
         " --version      print the version\n"
         "       " +
-        program +
+        name +
         " --help         print this\n"
         "\n"
         "Solves a contact problem with friction in " +
-        dimensions +
+        program.dimensions +
         " dimensions by monotone\n"
         "multigrid. SCENE.prm describes body, obstacle, loads and solver; "
         "entries\n"
         "given on the command line take precedence over the file, for example\n"
         "\n"
         "  " +
-        program + " " + example +
+        name + " " + program.example +
         "\n"
         "\n"
         "On several processors: mpirun -np N " +
-        program +
+        name +
         " SCENE.prm ...\n"
         "\n"
         "The results go to the directory given by Output/Directory: history.h5 "
@@ -63,11 +62,9 @@ namespace Friction
 
 
   int
-  run_program(int                argc,
-              char             **argv,
-              const std::string &program,
-              const std::string &dimensions,
-              const std::string &example,
+  run_program(int            argc,
+              char         **argv,
+              const Program &program,
               const std::function<bool(const Parameters &, const Start)> &run)
   {
     using namespace dealii;
@@ -81,7 +78,7 @@ namespace Friction
     // An unexpected exception may be that of a single process. We do not know
     // what the others are waiting for; only MPI can end them.
     const auto unexpected = [&](const std::string &what) {
-      std::cerr << program << ": unexpected error: " << what << std::endl;
+      std::cerr << program.name << ": unexpected error: " << what << std::endl;
       if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
         MPI_Abort(MPI_COMM_WORLD, 3);
       return 3;
@@ -95,13 +92,13 @@ namespace Friction
           {
             if (speaks)
               (arguments.empty() ? std::cerr : std::cout)
-                << usage(program, dimensions, example) << std::flush;
+                << usage(program) << std::flush;
             return arguments.empty() ? 2 : 0;
           }
         if (arguments[0] == "--version")
           {
             if (speaks)
-              std::cout << program << ' ' << version() << " (deal.II "
+              std::cout << program.name << ' ' << version() << " (deal.II "
                         << DEAL_II_PACKAGE_VERSION << ", "
 #ifdef DEBUG
                         << "debug mode"
@@ -139,7 +136,7 @@ namespace Friction
     catch (const InputError &error)
       {
         if (speaks)
-          std::cerr << program << ": " << error.what() << std::endl;
+          std::cerr << program.name << ": " << error.what() << std::endl;
         return 2;
       }
     catch (const std::exception &error)

@@ -15,6 +15,14 @@ namespace Friction
     from_checkpoint ///< with the last one in the output directory
   };
 
+  /** What a program says about itself. */
+  struct Program
+  {
+    std::string name;
+    std::string dimensions; ///< "two" or "three"
+    std::string example;    ///< of a command line, without the program
+  };
+
   /**
    * What every step program does around its work: starts MPI, answers `--help`
    * and `--parameters`, reads the scene file with `--restart` and the overrides
@@ -32,17 +40,12 @@ namespace Friction
    * of one process while the others wait for its data, so that it ends all of
    * them at once, with the same status 3.
    *
-   * @param program     the name of the program.
-   * @param dimensions  "two" or "three".
-   * @param example     an example of a command line, without the program.
-   * @param run         does the work and says whether all levels were solved.
+   * @param run  does the work and says whether all levels were solved.
    */
   int
-  run_program(int                argc,
-              char             **argv,
-              const std::string &program,
-              const std::string &dimensions,
-              const std::string &example,
+  run_program(int            argc,
+              char         **argv,
+              const Program &program,
               const std::function<bool(const Parameters &, const Start)> &run);
 } // namespace Friction
 

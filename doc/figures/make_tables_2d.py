@@ -31,7 +31,7 @@ def one_level(runs):
         level = file["cycles/level"][:]
         here = level == level.max()
         columns = [file[f"cycles/{name}"][:][here]
-                   for name in ("increment", "energy", "step_length", "truncated")]
+                   for name in ("increment", "energy", "damping", "truncated")]
     last = columns[1][-1]
     rows = [" cycle  increment  energy above the last one  step length  truncated"]
     for k, (increment, energy, length, truncated) in enumerate(zip(*columns)):

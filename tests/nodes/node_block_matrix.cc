@@ -12,8 +12,8 @@
 // where none was given.
 
 #include <common/discretization/leaf_matrix.h>
+#include <common/nodes/gauss_seidel.h>
 #include <common/nodes/node_block_matrix.h>
-#include <common/nodes/sweep_schedule.h>
 
 #include <deal.II/base/quadrature_lib.h>
 
@@ -153,19 +153,16 @@ namespace
           x.segment(dim * i, dim) += block.inverse() * defect;
         }
     };
+    GhostExchange          nobody;
+    const GaussSeidel<dim> one_after_the_other(A, inverses, nodes);
     for (const bool backwards : {false, true})
       {
         Eigen::VectorXd expected = x, got = x;
         for (unsigned int step = 0; step < 3; ++step)
           {
             sweep(expected, backwards);
-            for (unsigned int k = 0; k < nodes.size(); ++k)
-              relax_nodes<dim>(A,
-                               inverses,
-                               nodes[backwards ? nodes.size() - 1 - k : k],
-                               b.data(),
-                               got.data(),
-                               backwards);
+            one_after_the_other.run(
+              {1, backwards}, b.data(), got.data(), nobody);
           }
         check_below((expected - got).cwiseAbs().maxCoeff(),
                     1e-14,
@@ -176,18 +173,10 @@ namespace
         bool same = true;
         for (const unsigned int chunk_size : {1, 3, 8, 17, 59, 60, 1000})
           {
-            GhostExchange            nobody;
-            const SweepSchedule<dim> schedule(A, nodes, chunk_size);
-            Eigen::VectorXd          chased = x, defect(dim * n);
-            gauss_seidel_sweeps<dim>(schedule,
-                                     A,
-                                     inverses,
-                                     b.data(),
-                                     chased.data(),
-                                     backwards,
-                                     3,
-                                     nobody,
-                                     defect.data());
+            const GaussSeidel<dim> relaxation(A, inverses, nodes, chunk_size);
+            Eigen::VectorXd        chased = x, defect(dim * n);
+            relaxation.run(
+              {3, backwards}, b.data(), chased.data(), nobody, defect.data());
             A.residual(r.data(), b.data(), got.data());
             same = same &&
               std::memcmp(
@@ -266,10 +255,11 @@ namespace
                             disc.dof_handler().get_fe(),
                             QGauss<dim>(2),
                             update_gradients | update_JxW_values);
-    std::vector<types::global_dof_index> indices(disc.dof_handler().get_fe().n_dofs_per_cell());
-    const FEValuesExtractors::Vector     displacement(0);
-    const double lambda = problem.scene.material().lambda();
-    const double mu     = problem.scene.material().mu();
+    std::vector<types::global_dof_index> indices(
+      disc.dof_handler().get_fe().n_dofs_per_cell());
+    const FEValuesExtractors::Vector displacement(0);
+    const double                     lambda = problem.scene.material().lambda();
+    const double                     mu     = problem.scene.material().mu();
     for (const auto &cell : disc.dof_handler().active_cell_iterators())
       {
         fe_values.reinit(cell);

@@ -90,7 +90,7 @@ main(int argc, char **argv)
                            "solve_seconds"})
     print("levels", name);
   for (const char *name :
-       {"level", "increment", "energy", "step_length", "truncated", "residual"})
+       {"level", "increment", "energy", "damping", "truncated", "residual"})
     print("cycles", name);
   for (const char *name :
        {"point", "normal", "gap", "force", "displacement", "measure", "state"})

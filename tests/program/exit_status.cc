@@ -14,9 +14,7 @@ main(int argc, char *argv[])
   return run_program(
     argc,
     argv,
-    "exit_status",
-    "two",
-    "block.prm",
+    {"exit_status", "two", "block.prm"},
     [](const Parameters &, const Start start) {
       const std::string mode = std::getenv("MODE");
       const bool        last =
