@@ -16,10 +16,9 @@ namespace Friction
         rhs.push_back(levels.vector(k));
         correction.push_back(levels.vector(k));
         work.push_back(levels.vector(k));
+        defect.push_back(levels.vector(k));
         start.push_back(levels.vector(k == 0 ? 0 : k - 1));
       }
-    for (unsigned int k = 0; k < levels.hierarchy().n_levels(); ++k)
-      defect.push_back(levels.vector(k));
   }
 
 
@@ -45,11 +44,6 @@ namespace Friction
     const unsigned int finest = levels.hierarchy().n_levels() - 1;
     const unsigned int top    = finest == 0 ? 0 : finest - 1;
     leaf_residual             = &r;
-    if (finest > 0)
-      {
-        defect[finest] = 0.;
-        transfer.add_from_leaf(finest, defect[finest], r);
-      }
     for (VectorType &c : correction)
       c = 0.;
     restrict_residual(top);
@@ -61,11 +55,7 @@ namespace Friction
     for (unsigned int k = 0; k <= top; ++k)
       transfer.copy_to_leaf(k, v, correction[k]);
     if (finest > 0)
-      {
-        defect[finest] = 0.;
-        transfer.prolongate_and_add(finest, defect[finest], correction[top]);
-        transfer.copy_to_leaf(finest, v, defect[finest]);
-      }
+      transfer.prolongate_to_leaf(v, correction[top]);
     levels.matrices().current_truncation().apply(v.begin());
   }
 
@@ -128,8 +118,10 @@ namespace Friction
   {
     const LevelTransfer<dim> &transfer = levels.transfer();
     rhs[k]                             = 0.;
-    if (k + 1 < levels.hierarchy().n_levels())
+    if (k + 1 < levels.n_correction_levels())
       transfer.restrict_and_add(k + 1, rhs[k], defect[k + 1]);
+    else if (k + 1 < levels.hierarchy().n_levels())
+      transfer.restrict_from_leaf(rhs[k], *leaf_residual);
     transfer.add_from_leaf(k, rhs[k], *leaf_residual);
     prepare_visits(k);
   }

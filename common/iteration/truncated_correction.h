@@ -47,9 +47,7 @@ namespace Friction
 
     // Per level: right hand side, correction, what the next coarser level had
     // when the visit began, and vectors of work. The corrections of a W-cycle
-    // accumulate over its visits to a level. The finest level only has a
-    // defect: the residuals of its leaf nodes, and on the way up their
-    // corrections.
+    // accumulate over its visits to a level.
     std::vector<VectorType> rhs, correction, start, defect, work;
 
     // What a cycle with bounds does in another way: to get ready for the

@@ -1,4 +1,5 @@
 #include <common/levels/level_transfer.h>
+#include <common/parallel/reductions.h>
 
 #include <algorithm>
 #include <memory>
@@ -6,17 +7,31 @@
 namespace Friction
 {
   template <int dim>
-  LevelTransfer<dim>::LevelTransfer(const DoFHandler<dim>     &dof_handler,
-                                    const LevelHierarchy<dim> &hierarchy)
+  LevelTransfer<dim>::LevelTransfer(const DoFHandler<dim>       &dof_handler,
+                                    const LevelHierarchy<dim>   &hierarchy,
+                                    const NodalConstraints<dim> &constraints)
     : hierarchy(hierarchy)
   {
+    const unsigned int last_level = hierarchy.n_levels() - 1;
+    const auto        &last       = hierarchy.level(last_level);
+    bool               differs    = last.own_nodes().size() != last.n_nodes() ||
+      last.own_nodes().size() != constraints.n_owned_nodes();
+    for (const auto &own : last.own_nodes())
+      differs = differs || own.node != own.leaf.number();
+    finest_is_leaf_mesh =
+      !true_on_any_process(differs, constraints.communicator());
+    if (!finest_is_leaf_mesh)
+      finest.reinit(last.partitioner());
+
     // With one process deal.II can work in our vectors as they are. With
     // several it copies to vectors of its own, which have other ghosts.
     std::vector<std::shared_ptr<const Utilities::MPI::Partitioner>> layouts;
     const unsigned int n_processes =
       hierarchy.level(0).numbering().distribution().n_processes();
     for (unsigned int k = 0; k < hierarchy.n_levels() && n_processes == 1; ++k)
-      layouts.push_back(hierarchy.level(k).partitioner());
+      layouts.push_back(k == last_level && finest_is_leaf_mesh
+                          ? constraints.partitioner()
+                          : hierarchy.level(k).partitioner());
     mg_constrained_dofs.initialize(dof_handler);
     transfer.initialize_constraints(mg_constrained_dofs);
     transfer.build(dof_handler, layouts);
@@ -88,6 +103,42 @@ namespace Friction
       for (unsigned int d = 0; d < dim; ++d)
         leaf.local_element(dim * own.leaf.number() + d) =
           values[dim * own.node + d];
+  }
+
+
+
+  template <int dim>
+  void
+  LevelTransfer<dim>::restrict_from_leaf(VectorType       &coarse,
+                                         const VectorType &leaf) const
+  {
+    const unsigned int k = hierarchy.n_levels() - 1;
+    if (finest_is_leaf_mesh)
+      restrict_and_add(k, coarse, leaf);
+    else
+      {
+        finest = 0.;
+        add_from_leaf(k, finest, leaf);
+        restrict_and_add(k, coarse, finest);
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  LevelTransfer<dim>::prolongate_to_leaf(VectorType       &leaf,
+                                         const VectorType &coarse) const
+  {
+    const unsigned int k = hierarchy.n_levels() - 1;
+    if (finest_is_leaf_mesh)
+      prolongate_and_add(k, leaf, coarse);
+    else
+      {
+        finest = 0.;
+        prolongate_and_add(k, finest, coarse);
+        copy_to_leaf(k, leaf, finest);
+      }
   }
 
 

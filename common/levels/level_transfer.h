@@ -32,9 +32,12 @@ namespace Friction
   class LevelTransfer
   {
   public:
-    /** Collective. @p hierarchy is kept by reference. */
-    LevelTransfer(const DoFHandler<dim>     &dof_handler,
-                  const LevelHierarchy<dim> &hierarchy);
+    /** Collective.
+     * @param hierarchy    kept by reference.
+     * @param constraints  for the layout of vectors of the leaf mesh. */
+    LevelTransfer(const DoFHandler<dim>       &dof_handler,
+                  const LevelHierarchy<dim>   &hierarchy,
+                  const NodalConstraints<dim> &constraints);
 
     /** coarse += P^T fine, from level @p k to the next coarser one.
      * Collective. */
@@ -59,16 +62,30 @@ namespace Friction
                       VectorType        &leaf,
                       const VectorType  &level) const;
 
+    /** From the leaf nodes of the finest level straight to the next coarser
+     * one: coarse += P^T leaf. Collective. */
+    void restrict_from_leaf(VectorType &coarse, const VectorType &leaf) const;
+
+    /** The way back: sets the values of these leaf nodes to those of P coarse.
+     * Collective.
+     * @param leaf  zero there. */
+    void prolongate_to_leaf(VectorType &leaf, const VectorType &coarse) const;
+
     std::size_t
     memory_consumption() const
     {
-      return transfer.memory_consumption();
+      return transfer.memory_consumption() + finest.memory_consumption();
     }
 
   private:
     const LevelHierarchy<dim>        &hierarchy;
     MGConstrainedDoFs                 mg_constrained_dofs;
     MGTransferMatrixFree<dim, double> transfer;
+
+    // On a mesh without local refinement the finest level is the leaf mesh,
+    // node by node, and no vector of its own is needed in between.
+    bool               finest_is_leaf_mesh;
+    mutable VectorType finest;
 
     // Level nodes of other processes at this process' leaf nodes; buffers
     // change.

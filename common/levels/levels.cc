@@ -9,7 +9,7 @@ namespace Friction
     : problem(problem)
     , level_hierarchy(
         dof_handler, problem.constraints, problem.stiffness.blocks())
-    , level_transfer(dof_handler, level_hierarchy)
+    , level_transfer(dof_handler, level_hierarchy, problem.constraints)
     , level_matrices(
         problem.stiffness.blocks(), level_hierarchy, problem.constraints)
     , coarsest(level_hierarchy, level_matrices, coarsest_method)

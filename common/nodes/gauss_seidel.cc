@@ -49,13 +49,18 @@ namespace Friction
                                 double            *x,
                                 const bool         backwards) const
   {
-    const auto relax = [&](const unsigned int i) {
-      const NodeValue<dim> product = A->row_times(i, x);
+    const NodeBlockMatrix<dim> &matrix  = *A;
+    const NodeBlock<dim>       *inverse = inverse_diagonals->data();
+    // A call for each node would cost more than its arithmetic.
+    const auto relax =
+      [ =, &matrix ](const unsigned int i) __attribute__((always_inline))
+    {
+      const NodeValue<dim> product = matrix.row_times(i, x);
       NodeValue<dim>       defect;
       for (int d = 0; d < dim; ++d)
         defect[d] = b[dim * i + d] - product[d];
       const NodeValue<dim> correction =
-        times<dim>((*inverse_diagonals)[i].data(), defect.data());
+        times<dim>(inverse[i].data(), defect.data());
       for (int d = 0; d < dim; ++d)
         x[dim * i + d] += correction[d];
     };
