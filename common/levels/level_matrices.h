@@ -22,8 +22,11 @@ namespace Friction
    * levels share keeps its untruncated coefficient on all of them.
    *
    * This is the cell-wise sum $\sum_K (TC_K)^T A_K (TC_K)$ over the active
-   * cells of a level, read off the assembled leaf matrix so that no cell matrix
-   * has to be kept. Rows of hanging nodes stay zero.
+   * cells $K$ of a level, with their stiffness matrices $A_K$ and $C_K$ the
+   * constraints that express the values at their vertices, some of which may
+   * hang, by those of the level's nodes. It is read off the assembled leaf
+   * matrix, so that no cell matrix has to be kept. Rows of hanging nodes stay
+   * zero.
    *
    * When the truncation changes at some contact nodes, only rows that depend on
    * them are computed anew, by the same code and hence to the same values as a
@@ -140,7 +143,7 @@ namespace Friction
 
     void prepare_exchange(const unsigned int level);
 
-    // A row of this process, or its part of somebody else's.
+    // A row of this process, or its part of a row of another process.
     void compute_row(const unsigned int level, const unsigned int row);
 
     // Sends parts of rows of others, and receives parts of ours; returns which

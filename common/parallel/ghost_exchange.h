@@ -71,7 +71,7 @@ namespace Friction
                  const unsigned int values_per_node,
                  const Combine      combine);
 
-    /** No ghosts on this process, and nobody has its nodes as ghosts. */
+    /** No ghosts on this process, and no process has its nodes as ghosts. */
     bool
     is_empty() const
     {

@@ -46,7 +46,7 @@ namespace
           name.compare(0, 6, "linear") == 0 ? linear : contact;
         if (other.size() == 0)
           other = contest.solution();
-        // Values at hanging nodes are nobody's business.
+        // Values at hanging nodes do not count.
         const auto &constraints = nest.discretization().constraints();
         double      difference  = 0;
         for (unsigned int node = 0; node < constraints.n_owned_nodes(); ++node)

@@ -275,7 +275,7 @@ namespace Benchmark
       if (exact && options.half_widths.empty())
         throw InputError(
           "A scene with an exact solution needs "
-          "--half-widths=CONTACT,STICK: nobody else knows them.");
+          "--half-widths=CONTACT,STICK: the program cannot know them.");
       bool another = true;
       while (another)
         {

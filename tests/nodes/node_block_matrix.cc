@@ -153,7 +153,7 @@ namespace
           x.segment(dim * i, dim) += block.inverse() * defect;
         }
     };
-    GhostExchange          nobody;
+    GhostExchange          no_ghosts;
     const GaussSeidel<dim> one_after_the_other(A, inverses, nodes);
     for (const bool backwards : {false, true})
       {
@@ -162,7 +162,7 @@ namespace
           {
             sweep(expected, backwards);
             one_after_the_other.run(
-              {1, backwards}, b.data(), got.data(), nobody);
+              {1, backwards}, b.data(), got.data(), no_ghosts);
           }
         check_below((expected - got).cwiseAbs().maxCoeff(),
                     1e-14,
@@ -176,7 +176,7 @@ namespace
             const GaussSeidel<dim> relaxation(A, inverses, nodes, chunk_size);
             Eigen::VectorXd        chased = x, defect(dim * n);
             relaxation.run(
-              {3, backwards}, b.data(), chased.data(), nobody, defect.data());
+              {3, backwards}, b.data(), chased.data(), no_ghosts, defect.data());
             A.residual(r.data(), b.data(), got.data());
             same = same &&
               std::memcmp(

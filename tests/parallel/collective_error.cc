@@ -1,5 +1,5 @@
 // An InputError that one process meets is met by all, with the same sentence,
-// and nobody waits for anybody: what comes after it is collective again.
+// and no process waits for another: what comes after it is collective again.
 
 #include <common/parallel/collective_error.h>
 

@@ -44,7 +44,7 @@ namespace Benchmark
     void vmult(VectorType &z, const VectorType &r) const;
 
     /** What the memory that the process has allocated grew by during set-up:
-     * nobody keeps accounts inside of ML. */
+     * no accounts are kept inside of ML. */
     std::size_t
     memory_consumption() const
     {
