@@ -92,20 +92,25 @@ class Visit:
         self.browser, self.screenshots = browser, screenshots
         self.offences = []
 
-    def look(self, page, screen_name, by_hand):
-        screen = SCREENS[screen_name]
-        try:
-            self.browser.get(page.as_uri())
-            found = self.browser.execute_async_script(
-                INSPECT, screen["width"], by_hand)
-        except TimeoutException:
-            found = ["the page is not ready after two minutes"]
-        found += self.messages()
-        found += self.requests()
-        for offence in dict.fromkeys(found):
-            self.offences.append(f"{page.name}, {screen_name}: {offence}")
-        if self.screenshots and by_hand:
-            self.take_screenshot(page, screen_name)
+    def look(self, page, by_hand):
+        """Loads a page once, and looks at it on one screen after the other."""
+        is_loaded = False
+        for screen_name, screen in SCREENS.items():
+            self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", screen)
+            try:
+                if not is_loaded:
+                    self.browser.get(page.as_uri())
+                is_loaded = True
+                found = self.browser.execute_async_script(
+                    INSPECT, screen["width"], by_hand)
+            except TimeoutException:
+                found = ["the page is not ready after two minutes"]
+            found += self.messages()
+            found += self.requests()
+            for offence in dict.fromkeys(found):
+                self.offences.append(f"{page.name}, {screen_name}: {offence}")
+            if self.screenshots and by_hand:
+                self.take_screenshot(page, screen_name)
 
     def messages(self):
         return [f"the console says: {' '.join(message['message'].split())}"
@@ -156,12 +161,10 @@ def main():
     chosen = choose(pages, options.all)
     browser = start(options)
     try:
-        for screen_name, screen in SCREENS.items():
-            browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", screen)
-            visit = Visit(browser, options.screenshots)
-            for page in chosen:
-                visit.look(page, screen_name, is_written_by_hand(page))
-            offences += visit.offences
+        visit = Visit(browser, options.screenshots)
+        for page in chosen:
+            visit.look(page, is_written_by_hand(page))
+        offences += visit.offences
     finally:
         browser.quit()
     for offence in offences:

@@ -116,13 +116,18 @@ function inspect() {
   done(offences);
 }
 
+// A change of the screen reaches the layout with a frame.
+function inspectNextFrame() {
+  requestAnimationFrame(() => requestAnimationFrame(inspect));
+}
+
 // MathJax comes after the page, and is through when its queue is empty.
 const waiting = document.querySelector('script[src*="MathJax.js"]');
 (function wait(turns) {
   if (!waiting)
-    inspect();
+    inspectNextFrame();
   else if (window.MathJax && MathJax.isReady)
-    MathJax.Hub.Queue(inspect);
+    MathJax.Hub.Queue(inspectNextFrame);
   else if (turns === 0)
     done(["MathJax has not been loaded"]);
   else
