@@ -54,7 +54,7 @@ namespace StepFriction2d
   // Second, there are two kinds of constraints, and they are kept apart.
   // Hanging nodes are condensed, as always. Prescribed displacements are not:
   // the rows of prescribed degrees of freedom stay in the matrix, so that
-  // $Au-f$ is the nodal force at any node of the body, and the solver simply
+  // $Au-f$ is the nodal force at any node that does not hang, and the solver
   // leaves these components alone. The nodal forces on the contact boundary are
   // the unknowns we care about most.
   template <int dim>
@@ -102,9 +102,7 @@ namespace StepFriction2d
     SolverReport report;
 
     // When the iteration may end, and where results go: the console,
-    // <code>history.h5</code>, files for ParaView, and checkpoints. The
-    // constructor creates the directory for them, so that a run which cannot
-    // write anything fails in its first second and not after its last level.
+    // <code>history.h5</code>, files for ParaView, and checkpoints.
     DiscretizationStop<dim> stop;
     RunOutput<dim>          output;
 
@@ -140,11 +138,9 @@ namespace StepFriction2d
 
   // @sect4{ContactProblem::make_first_mesh}
 
-  // The mesh is a matter of the scene. The coarsest level is solved directly as
-  // long as it is small, so it should be as coarse as the geometry allows; for
-  // a large mesh from a file there is algebraic multigrid. Whatever else is
-  // refined globally at the start only has the first level begin on a finer
-  // mesh.
+  // The mesh is a matter of the scene. The coarsest level is solved directly
+  // as long as it is small, so it should be as coarse as the geometry allows;
+  // for a large mesh from a file there is algebraic multigrid.
   //
   // A checkpoint holds refinements, not vertices. So the coarse mesh has to be
   // made in either case, and p4est then refines it as it was, and distributes
@@ -265,12 +261,15 @@ namespace StepFriction2d
     // are moved back along their normals, and the normal part of each traction
     // times $m_p$ becomes the force $\tau(p)$ that friction starts with. On the
     // first mesh everything is zero, and there is no friction before the first
-    // normal force. With Tresca's law $\tau(p)$ is not guessed but given.
+    // normal force. With Tresca's law (<code>Contact/Friction law =
+    // Tresca</code>) the bound <code>Contact/Friction bound</code> takes the
+    // place of $F\tau(p)$.
     Timer timer;
     state = make_initial_guess(discretization, displacement, tractions);
 
     // What all parts refer to: stiffness, loads, constraints and contact nodes,
-    // and the law of friction.
+    // and the law of friction. It is a copy, since continuation, the last of
+    // the safeguards, solves with smaller coefficients first.
     DiscreteProblem<dim> problem = discretization.problem();
     const SolverSettings settings =
       stop.settings_for(discretization.dof_handler().n_dofs());
@@ -295,11 +294,12 @@ namespace StepFriction2d
     Linearization<dim> linearization(problem, settings.truncation);
 
     // <i>Part 4: the coarse correction.</i> <code>Levels</code> has all that is
-    // made once per mesh: the matrices $B_k$, their relaxation, the solver of
-    // the coarsest one, and deal.II's <code>MGTransferMatrixFree</code>, by
-    // which residuals come down and corrections go up. Truncation is in the
-    // matrices and, once on the way down and once on the way up, in the vectors
-    // of the leaf mesh; the interpolation is not changed.
+    // made once per mesh and kept up to date: the matrices $B_k$, their
+    // relaxation, the solver of the coarsest one, and deal.II's
+    // <code>MGTransferMatrixFree</code>, by which residuals come down and
+    // corrections go up. Truncation is in the matrices and, once on the way
+    // down and once on the way up, in the vectors of the leaf mesh; the
+    // interpolation is not changed.
     Levels<dim> levels(
       discretization.dof_handler(), problem, settings.coarsest_method);
     const auto correction = make_correction(levels, problem, settings);
@@ -308,8 +308,9 @@ namespace StepFriction2d
     // the correction and the step before.
     const auto step_control = make_step_control(functional, settings);
 
-    // Put together, they are one step from a smoothed iterate to the next, and
-    // any of them can be exchanged for another of its kind.
+    // Put together, they are one step from a smoothed iterate to the next.
+    // Parts 4 and 5 are classes with several kinds; any other can be exchanged
+    // for a class with the same functions.
     MonotoneMultigrid<dim> iteration(functional,
                                      smoother,
                                      linearization,
@@ -325,9 +326,9 @@ namespace StepFriction2d
     // small certificate <code>report.converged</code> is false.
     //
     // Should the iteration get nowhere, which much friction or very long cells
-    // can bring about, <code>SafeguardedSolver</code> exchanges one of the
-    // parts after the other; levels and matrices stay the same. What it had to
-    // do, the console says; in most scenes it is nothing.
+    // can bring about, <code>SafeguardedSolver</code> exchanges parts 5 and 4,
+    // and then Algorithm 3 for others; levels and matrices stay the same. What
+    // it had to do, the console says; in most scenes it is nothing.
     SafeguardedSolver<dim> solver(problem, levels, iteration, settings);
     setup_seconds = discretization.setup_seconds() + timer.wall_time();
 
@@ -363,8 +364,7 @@ namespace StepFriction2d
   //
   // All cells are marked whose indicator is at least a given fraction of the
   // largest. There is no coarsening, so that interpolation to the next mesh
-  // loses nothing. If there is no error at all, nothing is marked and the run
-  // is complete.
+  // loses nothing.
   //
   // The estimator knows where the error in the energy norm comes from. For the
   // contact stresses themselves one may want a contact zone that is resolved
@@ -435,7 +435,7 @@ namespace StepFriction2d
   // @sect4{ContactProblem::run}
 
   // The loop over levels. It ends when the mesh is fine enough, or when a level
-  // could not be solved; the certificate says by how much which law is violated.
+  // could not be solved; its certificate says which law is violated.
   template <int dim>
   bool
   ContactProblem<dim>::run(const Start start)

@@ -30,15 +30,8 @@ namespace StepFriction3d
   // @sect3{The first mesh}
 
   // On the first mesh the body is undeformed. A checkpoint holds the
-  // refinements of a mesh, by any number of processes, and the two vectors that
-  // had been interpolated to it.
-  //
-  // It is in three dimensions that the flag
-  // <code>limit_level_difference_at_vertices</code>, which
-  // <code>NestedIteration</code> gives its mesh, is really needed. Without it,
-  // masters of a hanging node might hang as well, and a hanging node might
-  // belong to several levels. With it, level matrices are sums of blocks of the
-  // leaf matrix, as in two dimensions.
+  // refinements of a mesh and the two vectors that had been interpolated to it;
+  // any number of processes may have written it, and any other may read it.
   //
   // The discretisation then finds the nodes that may touch
   // (<code>ContactBoundary</code>). Several bilinear faces meet in a node,
@@ -73,12 +66,12 @@ namespace StepFriction3d
   // The five parts are those of two dimensions, and <code>ContactSolver</code>
   // puts them together in the same way. Three of them have more to do.
   // - In the leading relaxation, the direction of slip of a node is unknown,
-  // and
-  //   its local problem nonlinear: a scalar equation for a direction, solved by
-  //   <code>SlipProblem</code>.
-  // - At a sliding node friction turns with the slip, and resists:
-  //   <code>Linearization</code> adds $\omega''_p$, a matrix of rank one, to
-  //   the diagonal blocks that the level matrices are made of.
+  //   and its local problem nonlinear: a scalar equation for a direction,
+  //   solved by <code>SlipProblem</code>.
+  // - At a sliding node friction turns with the slip, and resists.
+  //   <code>Linearization</code> computes $\omega''_p$, a matrix of rank one,
+  //   and <code>LevelMatrices</code> adds it to the diagonal blocks of the leaf
+  //   matrix that the level matrices are made of.
   // - The line search meets hyperbolas instead of parabolas with kinks
   //   (<code>TrescaFunctional::minimize_along()</code>).
   //
@@ -113,21 +106,24 @@ namespace StepFriction3d
   // In space, forces on a body amount to six numbers: a force, and its moment
   // about some point, here the origin. The tangential force in the table is the
   // norm of a sum of vectors, which cancel where the scene is symmetric, and
-  // says nothing about how much friction there is. The work of friction does:
-  // where a node slides, friction is opposite to its slip, so that each of them
-  // adds $-R_T\cdot u_T=F\tau\,|u_T|$, and nodes that stick add nothing.
+  // says nothing about how much friction there is. The work of friction,
+  // $\omega(u)$, does: where a node slides, friction is opposite to its slip,
+  // so that each of them adds $-R_T\cdot u_T=\mathcal F\tau\,|u_T|$, and nodes
+  // that stick add nothing.
   //
   // This is also an example of how to evaluate a solution. A process has its
-  // own contact nodes, and each node the frame and the measure $m_p$ by which
+  // own contact nodes, and each node its normal and the measure $m_p$ by which
   // tractions are turned into forces again; all that processes have to do
-  // together is to add up. Numbers that are zero up to the tolerance of the
-  // solver, those which cancel by symmetry for example, are printed as such.
+  // together is to add up. Components that are zero but for the tolerance of
+  // the solver, those which cancel by symmetry for example, are printed as
+  // zero; for the moment, the tolerance is that of a force times the longest
+  // lever arm.
   std::string
   describe_forces(const NestedIteration<3> &nest)
   {
     const ContactBoundary<3> &contact = nest.discretization().contact();
     Tensor<1, 3>              force, moment;
-    double                    size = 0, work = 0;
+    double                    lever = 0, work = 0;
     for (const ContactNode<3> &p : contact)
       {
         Tensor<1, 3> R, u;
@@ -140,14 +136,14 @@ namespace StepFriction3d
         force += R;
         moment += cross_product_3d(p.point, R);
         work -= R_T * u;
-        size = std::max(size, p.point.norm());
+        lever = std::max(lever, p.point.norm());
       }
     const MPI_Comm processes =
       nest.discretization().constraints().communicator();
     force  = Utilities::MPI::sum(force, processes);
     moment = Utilities::MPI::sum(moment, processes);
     work   = Utilities::MPI::sum(work, processes);
-    size   = Utilities::MPI::max(size, processes);
+    lever  = Utilities::MPI::max(lever, processes);
 
     std::ostringstream text;
     text.precision(4);
@@ -157,11 +153,11 @@ namespace StepFriction3d
              << (std::abs(vector[d]) < 1e-6 * scale ? 0. : vector[d]);
       text << ")";
     };
-    text << "The obstacle acts on the body with the force ";
+    text << "Force of the obstacle on the body ";
     print(force, force.norm());
-    text << " and the moment ";
-    print(moment, size * force.norm());
-    text << " about the origin; the work of friction is " << work << ".";
+    text << ", moment about the origin ";
+    print(moment, lever * force.norm());
+    text << ", work of friction " << work << ".";
     return text.str();
   }
 
@@ -169,20 +165,19 @@ namespace StepFriction3d
 
   // @sect3{The loop}
 
-  // In scenes like <code>cylinder</code> marking meets the singularities at the
-  // ends of the contact zone, where prescribed displacements and obstacle
-  // contradict each other. A singularity is no reason for concern as such;
-  // local refinement is there for resolving them. This one is different. As the
-  // solution has infinite energy there, each halving of the cells brings about
-  // as much new energy as the one before, and the estimator is right to find
-  // the largest errors always in the same place. <code>Refinement/Contact
-  // zone</code> refines all cells in contact besides, which is a surface: every
-  // level has about four times as many nodes in contact as the one before.
+  // Solve, and as long as that works and a finer mesh is wanted, mark, refine,
+  // and solve again. What <code>refine()</code> carries over are stresses and
+  // not forces. This is even more important than in two dimensions, for a force
+  // falls to a quarter if the mesh is refined, and local refinement changes
+  // measures abruptly, too: where a hanging node appears, its masters get a
+  // share of it.
   //
-  // That <code>refine()</code> carries over stresses and not forces is even
-  // more important than in two dimensions, for a force falls to a quarter if
-  // the mesh is refined, and local refinement changes measures abruptly, too:
-  // where a hanging node appears, its masters get a share of it.
+  // In scenes like <code>cylinder</code>, <code>mark()</code> meets the
+  // singularities at the ends of the contact zone, where prescribed
+  // displacements and obstacle contradict each other: the energies of the
+  // discrete solutions grow without bound, and the estimator is right to find
+  // the largest errors always in the same place. <code>Refinement/Contact
+  // zone</code> refines all cells in contact besides.
   bool
   run(const Parameters &parameters, const Start start)
   {

@@ -125,12 +125,9 @@ namespace Friction
 
   template <int dim>
   ErrorEstimate
-  NestedIteration<dim>::estimate()
+  NestedIteration<dim>::estimate() const
   {
-    const ErrorEstimate result =
-      estimate_contact_error(the_discretization, u, contact_stresses);
-    add_estimate(result.total, the_discretization.dof_handler().n_dofs());
-    return result;
+    return estimate_contact_error(the_discretization, u, contact_stresses);
   }
 
 
@@ -169,6 +166,7 @@ namespace Friction
   bool
   NestedIteration<dim>::mark(const ErrorEstimate &estimate)
   {
+    add_estimate(estimate.total, the_discretization.dof_handler().n_dofs());
     if (the_parameters.refinement.strategy == RefinementStrategy::uniform)
       {
         mark_all();

@@ -60,11 +60,11 @@ namespace Friction
     /** Whether the parameters want this mesh to have an estimate. */
     bool wants_estimate() const;
 
-    /** Of the accepted solution; the next mesh will know it, too. */
-    ErrorEstimate estimate();
+    /** Of the accepted solution. */
+    ErrorEstimate estimate() const;
 
-    /** The same that has been found before, on the last mesh of a run that is
-     * continued. */
+    /** For the next mesh: what has been estimated on the last one of a run that
+     * is continued. */
     void add_estimate(const double                          estimated_error,
                       const dealii::types::global_dof_index n_dofs);
 
@@ -73,7 +73,9 @@ namespace Friction
 
     /**
      * Flags cells for refinement as the parameters say.
-     * @param estimate  only needed if refinement is adaptive.
+     * @param estimate  of this mesh; only needed if refinement is adaptive, or
+     *                  if the next mesh is to be solved as well as this makes
+     *                  sensible.
      * @return whether there is anything to refine.
      */
     bool mark(const ErrorEstimate &estimate);

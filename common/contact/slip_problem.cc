@@ -8,29 +8,29 @@ namespace Friction
 {
   namespace
   {
-    // The minimiser of  a z^2 / 2 - b z + s |z|.
+    // The minimiser of  a z^2 / 2 - b z + kappa |z|.
     inline double
-    shrink(const double a, const double b, const double s)
+    shrink(const double a, const double b, const double kappa)
     {
-      if (std::abs(b) <= s)
+      if (std::abs(b) <= kappa)
         return 0.;
-      return (b > 0 ? b - s : b + s) / a;
+      return (b > 0 ? b - kappa : b + kappa) / a;
     }
 
 
 
-    // |b|^2 - s^2, where b is close to the edge of the cone of friction the
+    // |b|^2 - kappa^2, where b is close to the edge of the cone of friction the
     // difference of large numbers: the products have to be exact. So are the
     // sums where it matters.
     inline double
-    square_difference(const std::array<double, 2> &b, const double s)
+    square_difference(const std::array<double, 2> &b, const double kappa)
     {
       const double large = std::max(std::abs(b[0]), std::abs(b[1])),
                    small = std::min(std::abs(b[0]), std::abs(b[1]));
-      const double l2 = large * large, s2 = s * s, m2 = small * small;
-      return ((l2 - s2) + m2) +
+      const double l2 = large * large, k2 = kappa * kappa, m2 = small * small;
+      return ((l2 - k2) + m2) +
         ((std::fma(large, large, -l2) + std::fma(small, small, -m2)) -
-         std::fma(s, s, -s2));
+         std::fma(kappa, kappa, -k2));
     }
 
 
@@ -128,10 +128,10 @@ namespace Friction
 
 
 
-  SlipProblem<1>::SlipProblem(const std::array<double, 1> &A,
+  SlipProblem<1>::SlipProblem(const std::array<double, 1> &block,
                               const unsigned int           n_free_components,
                               const LocalSolver)
-    : a(A[0])
+    : a(block[0])
     , n_free_components(n_free_components)
   {}
 
@@ -139,33 +139,34 @@ namespace Friction
 
   std::array<double, 1>
   SlipProblem<1>::solve(const std::array<double, 1> &b,
-                        const double                 s,
+                        const double                 kappa,
                         const std::array<double, 1> &prescribed) const
   {
-    return n_free_components == 0 ? prescribed
-                                  : std::array<double, 1>{{shrink(a, b[0], s)}};
+    return n_free_components == 0
+      ? prescribed
+      : std::array<double, 1>{{shrink(a, b[0], kappa)}};
   }
 
 
 
-  SlipProblem<2>::SlipProblem(const std::array<double, 4> &A,
+  SlipProblem<2>::SlipProblem(const std::array<double, 4> &block,
                               const unsigned int           n_free_components,
                               const LocalSolver            solver)
-    : a_11(A[0])
-    , a_12(A[1])
+    : a_11(block[0])
+    , a_12(block[1])
     , n_free_components(n_free_components)
     , solver(solver)
   {
     // A Jacobi rotation by at most 45 degrees from the axis of the larger
     // diagonal entry.
-    const double a_22 = A[3];
+    const double a_22 = block[3];
     const double half = .5 * std::abs(a_11 - a_22),
                  root = std::hypot(half, a_12);
     const double t    = root > 0 ? a_12 / (half + root) : 0.;
     const double c    = 1. / std::sqrt(1. + t * t);
-    e_c               = a_11 >= a_22 ? c : t * c;
-    e_s               = a_11 >= a_22 ? t * c : c;
-    lambda_1          = std::max(a_11, a_22) + t * a_12;
+    axis_c            = a_11 >= a_22 ? c : t * c;
+    axis_s            = a_11 >= a_22 ? t * c : c;
+    a_1               = std::max(a_11, a_22) + t * a_12;
     difference        = 2. * root;
 
     // The small eigenvalue from the determinant, the difference of products
@@ -174,52 +175,53 @@ namespace Friction
     const double product = a_12 * a_12;
     const double determinant =
       std::fma(a_11, a_22, -product) - std::fma(a_12, a_12, -product);
-    lambda_2 = determinant > 0
-      ? determinant / lambda_1
-      : std::numeric_limits<double>::epsilon() * lambda_1;
+    a_2 = determinant > 0 ? determinant / a_1
+                          : std::numeric_limits<double>::epsilon() * a_1;
   }
 
 
 
   inline std::array<double, 2>
-  SlipProblem<2>::to_eigenbasis(const std::array<double, 2> &v) const
+  SlipProblem<2>::to_eigenbasis(const std::array<double, 2> &z) const
   {
-    return {{e_c * v[0] + e_s * v[1], -e_s * v[0] + e_c * v[1]}};
+    return {{axis_c * z[0] + axis_s * z[1], -axis_s * z[0] + axis_c * z[1]}};
   }
 
 
 
   inline std::array<double, 2>
-  SlipProblem<2>::from_eigenbasis(const double v_1, const double v_2) const
+  SlipProblem<2>::from_eigenbasis(const double z_1, const double z_2) const
   {
-    return {{e_c * v_1 - e_s * v_2, e_s * v_1 + e_c * v_2}};
+    return {{axis_c * z_1 - axis_s * z_2, axis_s * z_1 + axis_c * z_2}};
   }
 
 
 
-  // The positive root S of  2 s S n^T A n + S^2 |A n|^2 = |b|^2 - s^2.
+  // The positive root ell of  2 kappa ell e^T a e + ell^2 |a e|^2 = |b|^2 -
+  // kappa^2.
   inline double
-  SlipProblem<2>::amount_of_slip(const double n_1,
-                                 const double n_2,
-                                 const double s,
+  SlipProblem<2>::amount_of_slip(const double e_1,
+                                 const double e_2,
+                                 const double kappa,
                                  const double excess) const
   {
-    const double An_1 = lambda_1 * n_1, An_2 = lambda_2 * n_2;
-    const double s_nAn = s * (n_1 * An_1 + n_2 * An_2);
+    const double ae_1 = a_1 * e_1, ae_2 = a_2 * e_2;
+    const double kappa_eae = kappa * (e_1 * ae_1 + e_2 * ae_2);
     return excess /
-      (s_nAn + std::sqrt(s_nAn * s_nAn + excess * (An_1 * An_1 + An_2 * An_2)));
+      (kappa_eae +
+       std::sqrt(kappa_eae * kappa_eae + excess * (ae_1 * ae_1 + ae_2 * ae_2)));
   }
 
 
 
   std::array<double, 2>
   SlipProblem<2>::solve(const std::array<double, 2> &b,
-                        const double                 s,
+                        const double                 kappa,
                         const std::array<double, 2> &prescribed) const
   {
     if (n_free_components == 2)
-      return solver == LocalSolver::uzawa ? solve_uzawa(b, s)
-                                          : solve_secular_equation(b, s);
+      return solver == LocalSolver::uzawa ? solve_uzawa(b, kappa)
+                                          : solve_secular_equation(b, kappa);
     if (n_free_components == 0)
       return prescribed;
 
@@ -227,10 +229,10 @@ namespace Friction
     // than the smallest of numbers makes no difference.
     const double w = prescribed[1], force = b[0] - a_12 * w,
                  k = a_11 * std::abs(w);
-    if (k < std::numeric_limits<double>::min() || s == 0.)
-      return {{shrink(a_11, force, s), w}};
+    if (k < std::numeric_limits<double>::min() || kappa == 0.)
+      return {{shrink(a_11, force, kappa), w}};
     const double    r         = std::abs(force);
-    const Direction slip      = find_direction(k, s, r, r - s, nullptr);
+    const Direction slip      = find_direction(k, kappa, r, r - kappa, nullptr);
     const double    magnitude = std::abs(w) * (slip.sine / slip.cosine);
     return {{std::copysign(magnitude, force), w}};
   }
@@ -239,80 +241,80 @@ namespace Friction
 
   std::array<double, 2>
   SlipProblem<2>::solve_secular_equation(const std::array<double, 2> &b,
-                                         const double                 s,
+                                         const double                 kappa,
                                          unsigned int *n_iterations) const
   {
     if (n_iterations != nullptr)
       *n_iterations = 0;
     const std::array<double, 2> force = to_eigenbasis(b);
-    if (s == 0.)
-      return from_eigenbasis(force[0] / lambda_1, force[1] / lambda_2);
+    if (kappa == 0.)
+      return from_eigenbasis(force[0] / a_1, force[1] / a_2);
 
-    const double excess = square_difference(b, s);
+    const double excess = square_difference(b, kappa);
     if (excess <= 0.)
       return {{0., 0.}};
 
-    // Close to the edge of the cone, how much b_2 differs from s is taken from
-    // the excess, since the rotation is subject to rounding.
-    const double b_1 = std::abs(force[0]), b_2 = std::abs(force[1]);
-    const double b_2_minus_s =
-      excess < s * s ? (excess - b_1 * b_1) / (b_2 + s) : b_2 - s;
-    const Direction n = find_direction(lambda_2 * b_1,
-                                       difference * s,
-                                       lambda_1 * b_2,
-                                       lambda_1 * b_2_minus_s + lambda_2 * s,
+    // Close to the edge of the cone, how much b_2 differs from kappa is taken
+    // from the excess, since the rotation is subject to rounding.
+    const double    b_1 = std::abs(force[0]), b_2 = std::abs(force[1]);
+    const double    b_2_minus_kappa = excess < kappa * kappa
+         ? (excess - b_1 * b_1) / (b_2 + kappa)
+         : b_2 - kappa;
+    const Direction e               = find_direction(a_2 * b_1,
+                                       difference * kappa,
+                                       a_1 * b_2,
+                                       a_1 * b_2_minus_kappa + a_2 * kappa,
                                        n_iterations);
-    const double    S = amount_of_slip(n.cosine, n.sine, s, excess);
-    return from_eigenbasis(std::copysign(S * n.cosine, force[0]),
-                           std::copysign(S * n.sine, force[1]));
+    const double    ell = amount_of_slip(e.cosine, e.sine, kappa, excess);
+    return from_eigenbasis(std::copysign(ell * e.cosine, force[0]),
+                           std::copysign(ell * e.sine, force[1]));
   }
 
 
 
   std::array<double, 2>
   SlipProblem<2>::solve_uzawa(const std::array<double, 2> &b,
-                              const double                 s,
+                              const double                 kappa,
                               unsigned int                *n_iterations) const
   {
     if (n_iterations != nullptr)
       *n_iterations = 0;
-    const double excess = square_difference(b, s);
-    if (s == 0. || excess <= 0.)
-      return solve_secular_equation(b, s);
+    const double excess = square_difference(b, kappa);
+    if (kappa == 0. || excess <= 0.)
+      return solve_secular_equation(b, kappa);
 
     const std::array<double, 2> force = to_eigenbasis(b);
     const double                scale = std::hypot(b[0], b[1]);
-    const double                step =
-      2. * lambda_1 * (lambda_2 / (lambda_1 + lambda_2)) / s; // rho s
-    double mu_1 = force[0] / scale, mu_2 = force[1] / scale;
+    const double step  = 2. * a_1 * (a_2 / (a_1 + a_2)) / kappa; // rho kappa
+    double       eta_1 = force[0] / scale, eta_2 = force[1] / scale;
     for (unsigned int n = 1; n <= maximum_uzawa_steps; ++n)
       {
-        mu_1 += step * (force[0] - s * mu_1) / lambda_1;
-        mu_2 += step * (force[1] - s * mu_2) / lambda_2;
-        const double modulus = std::hypot(mu_1, mu_2);
+        eta_1 += step * (force[0] - kappa * eta_1) / a_1;
+        eta_2 += step * (force[1] - kappa * eta_2) / a_2;
+        const double modulus = std::hypot(eta_1, eta_2);
         if (modulus > 1.)
           {
-            mu_1 /= modulus;
-            mu_2 /= modulus;
+            eta_1 /= modulus;
+            eta_2 /= modulus;
           }
         if (n_iterations != nullptr)
           *n_iterations = n;
 
-        // If the slip is tiny, b - s mu has lost its digits, and so has v. The
-        // direction is that of mu, and its amount is found from that.
-        const double n_1 = mu_1 / std::min(modulus, 1.),
-                     n_2 = mu_2 / std::min(modulus, 1.);
-        const double S   = amount_of_slip(n_1, n_2, s, excess);
-        if (std::hypot(force[0] - (s + S * lambda_1) * n_1,
-                       force[1] - (s + S * lambda_2) * n_2) <=
+        // If the slip is tiny, b - kappa eta has lost its digits, and so has z.
+        // The direction is that of eta, and its amount is found from that.
+        const double e_1 = eta_1 / std::min(modulus, 1.),
+                     e_2 = eta_2 / std::min(modulus, 1.);
+        const double ell = amount_of_slip(e_1, e_2, kappa, excess);
+        if (std::hypot(force[0] - (kappa + ell * a_1) * e_1,
+                       force[1] - (kappa + ell * a_2) * e_2) <=
             uzawa_tolerance * scale)
-          return from_eigenbasis(S * n_1, S * n_2);
+          return from_eigenbasis(ell * e_1, ell * e_2);
       }
 
     unsigned int                n_more;
-    const std::array<double, 2> v = solve_secular_equation(b, s, &n_more);
+    const std::array<double, 2> z = solve_secular_equation(b, kappa, &n_more);
     if (n_iterations != nullptr)
       *n_iterations = maximum_uzawa_steps + n_more;
-    return v;
+    return z;
   }
 } // namespace Friction

@@ -54,8 +54,9 @@ namespace Friction
      * @param x  the iterate, which must be admissible. Its displacement,
      *           phases and, if it updates them, normal forces are changed: each
      *           node then takes its normal force from the intermediate iterate
-     *           just before it is relaxed, (6.19). Its residual is that of the
-     *           displacement on return.
+     *           just before it is relaxed, (6.19). On return its residual is
+     *           that of the displacement, and its normal forces are those of
+     *           the residual.
      * @param trust_first_normal_forces  lets the first sweep work with the
      *           given normal forces in any case.
      */

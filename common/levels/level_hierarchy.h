@@ -97,8 +97,10 @@ namespace Friction
         return leaf_nodes[node];
       }
 
-      /** The owned leaf nodes whose finest level this is, and which do not
-       * hang. Their level nodes may be ghosts. */
+      /** The leaf nodes of this process whose finest level this is, and which
+       * do not hang: here their residuals enter, and here they get their
+       * corrections. They touch no refined cell and are not relaxed. Their
+       * level nodes may be ghosts. */
       const std::vector<OwnNode> &
       own_nodes() const
       {

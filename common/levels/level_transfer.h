@@ -15,8 +15,9 @@ namespace Friction
    * How residuals come down and corrections go up.
    *
    * Between two levels this is deal.II's MGTransferMatrixFree, as in step-50
-   * and step-75. Between the leaf mesh and the levels it is a class of our own,
-   * for two reasons. deal.II's copy_to_mg() puts the residual of a node at the
+   * and step-75. Between the leaf mesh and the levels, add_from_leaf() and
+   * copy_to_leaf() take the place of its copy_to_mg() and copy_from_mg(), for
+   * two reasons. deal.II's copy_to_mg() puts the residual of a node at the
    * boundary of a refined region on the coarser of its levels, where its
    * function is smooth; here it enters on the finest level $\ell(p)$ that has
    * the node, since the level matrices are Galerkin products of the leaf

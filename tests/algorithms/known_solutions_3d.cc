@@ -2,6 +2,8 @@
 // stresses must be those of the closed form, up to rounding, whatever the
 // direction of shear, the mesh, the position of the body, and the units.
 
+#include <common/algorithms/contact_solver.h>
+
 #include <deal.II/grid/grid_tools.h>
 
 #include <iomanip>
@@ -255,5 +257,4 @@ main(int argc, char **argv)
       all.local_solver = LocalSolver::uzawa;
       stick_slip(all);
     }
-}#include <common/algorithms/contact_solver.h>
-
+}

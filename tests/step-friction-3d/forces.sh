@@ -10,7 +10,7 @@ trap 'rm -rf "$work"' EXIT
   >"$work/output" 2>&1 || { cat "$work/output"; exit 1; }
 cat "$work/output"
 
-sed -n 's/^.*with the force (\(.*\)) and the moment (\(.*\)) about.* is \(.*\)\.$/\1, \2, \3/p' \
+sed -n 's/^Force .* body (\(.*\)), moment .* (\(.*\)), work .* \(.*\)\.$/\1, \2, \3/p' \
   "$work/output" | tr -d ',' | awk '
   function near(got, wanted) {
     if ((got - wanted)^2 > (5e-4 * scale)^2) {
