@@ -157,7 +157,9 @@ namespace StepFriction3d
     print(force, force.norm());
     text << ", moment about the origin ";
     print(moment, lever * force.norm());
-    text << ", work of friction " << work << ".";
+    if (nest.state().has_friction())
+      text << ", work of friction " << work;
+    text << ".";
     return text.str();
   }
 

@@ -1,13 +1,12 @@
-// Messages on their way: those of the program around the library, and those of
-// an exchange of ghosts that is moved to another place in between.
+// Messages of the program around the library, and those of an exchange of
+// ghosts that has been moved to another place.
 //
 // - A message that the program has sent, with the tag that the library uses, is
-// not
-//   taken for one of the library's while matrices of levels are made and a
+//   not taken for one of the library's while matrices of levels are made and a
 //   problem is solved, and the program gets it in the end.
-// - An exchange that is moved after its messages have left brings the same
-// values as
-//   one that stays where it is. It cannot be copied.
+// - An exchange that has been moved brings the same values as one that stays
+//   where it is. It cannot be copied, and not be moved while messages are on
+//   their way, which an assertion sees to.
 
 #include <common/algorithms/contact_solver.h>
 #include <common/parallel/ghost_exchange.h>
@@ -85,11 +84,10 @@ namespace
     exchange.update(stays.data(), 1);
 
     GhostExchange first(level.numbering(), level.coupled_ghosts());
-    first.start(moves.data(), 1);
     GhostExchange second(std::move(first));
     GhostExchange third;
     third = std::move(second);
-    third.finish(moves.data());
+    third.update(moves.data(), 1);
 
     check_everywhere(!level.coupled_ghosts().empty() && stays != before,
                      "every process has ghosts");
@@ -103,7 +101,7 @@ int
 main(int argc, char *argv[])
 {
   Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  Parameters p = block_parameters<2>(FrictionLaw::Coulomb, .4);
+  Parameters p = block_parameters<2>(FrictionLaw::coulomb, .4);
   p.refinement.initial_refinements = 4;
   const Scene<2> scene(p);
   const auto     mesh = make_triangulation<2>();
