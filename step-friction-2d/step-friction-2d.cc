@@ -220,7 +220,7 @@ namespace StepFriction2d
           {
             const Tensor<1, dim> g_i = fe_values.shape_grad(i, q);
             const unsigned int   c_i = fe.system_to_component_index(i).first;
-            for (const unsigned int j : fe_values.dof_indices())
+            for (const unsigned int j : fe_values.dof_indices_ending_at(i))
               {
                 const Tensor<1, dim> g_j = fe_values.shape_grad(j, q);
                 const unsigned int c_j = fe.system_to_component_index(j).first;
@@ -228,6 +228,7 @@ namespace StepFriction2d
                                       mu * g_i[c_j] * g_j[c_i] +
                                       (c_i == c_j ? mu * (g_i * g_j) : 0.)) *
                   fe_values.JxW(q);
+                cell_matrix(j, i) = cell_matrix(i, j);
               }
           }
     });

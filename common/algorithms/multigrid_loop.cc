@@ -1,4 +1,5 @@
 #include <common/algorithms/multigrid_loop.h>
+#include <common/parallel/owned_values.h>
 #include <common/parallel/reductions.h>
 
 #include <algorithm>
@@ -107,22 +108,20 @@ namespace Friction
     const auto                 look_at_iterate = [&]() {
       const bool first = result.cycles.empty();
       sums.fill(0.);
-      for (unsigned int i = 0; i < n_dofs; ++i)
-        {
-          const double u = x.u.local_element(i),
-                       r = x.residual.local_element(i);
-          if (!first)
-            sums[increment] += (u - last_u.local_element(i)) *
-              (last_residual.local_element(i) - r);
-          sums[norm] += u * (problem.forces.local_element(i) - r);
-        }
+      const double *u = x.u.begin(), *r = x.residual.begin(),
+                   *f = problem.forces.begin();
+      sums[norm]      = sum_of_terms(
+        n_dofs, [=](const unsigned int i) { return u[i] * (f[i] - r[i]); });
       sums[energy] =
         iteration.functional().energy_share(x.u, x.residual, x.state);
       if (!first)
         {
-          for (unsigned int i = 0; i < n_dofs; ++i)
-            sums[residual] += iteration.truncated_residual().local_element(i) *
-              iteration.truncated_residual().local_element(i);
+          const double *old_u = last_u.begin(), *old_r = last_residual.begin();
+          sums[increment] = sum_of_terms(n_dofs, [=](const unsigned int i) {
+            return (u[i] - old_u[i]) * (old_r[i] - r[i]);
+          });
+          sums[residual] = dot_owned(iteration.truncated_residual(),
+                                     iteration.truncated_residual());
           sums[truncated] = iteration.truncation().n_truncated_components();
         }
       sums = sum_over_processes(sums, problem.communicator());

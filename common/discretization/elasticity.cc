@@ -15,7 +15,8 @@ namespace Friction
   // With the gradients g_i of the scalar shape functions of components c_i an
   // entry is lambda theta_i theta_j + mu g_i[c_j] g_j[c_i]
   // + mu delta(c_i,c_j) g_i.g_j. What belongs to one shape function is asked
-  // for once per quadrature point, and not for each pair.
+  // for once per quadrature point, and not for each pair, and the matrix is
+  // symmetric.
   template <int dim>
   CellForm<dim>
   elasticity(const Material &material)
@@ -37,7 +38,7 @@ namespace Friction
         shapes[i].component =
           fe_values.get_fe().system_to_component_index(i).first;
 
-      std::vector<double> sums(n_dofs * n_dofs, 0.);
+      std::vector<double> sums(n_dofs * (n_dofs + 1) / 2, 0.);
       for (const unsigned int q : fe_values.quadrature_point_indices())
         {
           for (unsigned int i = 0; i < n_dofs; ++i)
@@ -47,18 +48,20 @@ namespace Friction
             }
           const double JxW   = fe_values.JxW(q);
           double      *entry = sums.data();
-          for (const Shape &i : shapes)
-            for (const Shape &j : shapes)
+          for (auto i = shapes.begin(); i != shapes.end(); ++i)
+            for (auto j = shapes.begin(); j <= i; ++j)
               *entry++ +=
-                (lambda * i.theta * j.theta +
-                 mu * i.gradient[j.component] * j.gradient[i.component] +
-                 (i.component == j.component ? mu * (i.gradient * j.gradient) :
-                                               0.)) *
+                (lambda * i->theta * j->theta +
+                 mu * i->gradient[j->component] * j->gradient[i->component] +
+                 (i->component == j->component
+                    ? mu * (i->gradient * j->gradient)
+                    : 0.)) *
                 JxW;
         }
+      const double *entry = sums.data();
       for (unsigned int i = 0; i < n_dofs; ++i)
-        for (unsigned int j = 0; j < n_dofs; ++j)
-          cell_matrix(i, j) = sums[i * n_dofs + j];
+        for (unsigned int j = 0; j <= i; ++j)
+          cell_matrix(i, j) = cell_matrix(j, i) = *entry++;
     };
   }
 

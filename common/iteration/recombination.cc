@@ -79,9 +79,7 @@ namespace Friction
     const MPI_Comm      comm   = problem.communicator();
     const unsigned int  n_dofs = v.locally_owned_size();
     std::vector<double> deviations(1 + steps.size(), 0.);
-    for (unsigned int i = 0; i < n_dofs; ++i)
-      deviations[0] = std::max(deviations[0],
-                               1e-13 * std::abs(last_iterate.local_element(i)));
+    deviations[0] = 1e-13 * largest_owned(last_iterate);
     for (unsigned int i = 0; i < steps.size(); ++i)
       for (const unsigned int node : truncation.changed_nodes())
         if (dim * node < n_dofs)
@@ -117,20 +115,14 @@ namespace Friction
           }
       return sum;
     };
-    const auto share = [&](const VectorType &a, const VectorType &b) {
-      double sum = 0;
-      for (unsigned int i = 0; i < n_dofs; ++i)
-        sum += a.local_element(i) * b.local_element(i);
-      return sum;
-    };
 
     // All scalar products in one reduction.
     std::vector<double> products_of_all;
     for (unsigned int i = 0; i < n; ++i)
       {
-        products_of_all.push_back(share(r, *basis[i]));
+        products_of_all.push_back(dot_owned(r, *basis[i]));
         for (unsigned int j = 0; j <= i; ++j)
-          products_of_all.push_back(share(*basis[i], *images[j]) +
+          products_of_all.push_back(dot_owned(*basis[i], *images[j]) +
                                     friction(*basis[i], *basis[j]));
       }
     sum_over_processes(products_of_all, comm);

@@ -160,13 +160,10 @@ namespace Friction
                                   const VectorType  &residual,
                                   const unsigned int n_changed) const
   {
-    std::array<double, 3> sums{{0., 0., 1. * n_changed}};
-    for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
-      {
-        sums[0] += residual.local_element(i) * v.local_element(i);
-        sums[1] += v.local_element(i) * Av.local_element(i);
-      }
-    sums = sum_over_processes(sums, problem.communicator());
+    const std::array<double, 3> sums = sum_over_processes(
+      std::array<double, 3>{
+        {dot_owned(residual, v), dot_owned(v, Av), 1. * n_changed}},
+      problem.communicator());
     return {sums[0], sums[1], static_cast<std::size_t>(sums[2])};
   }
 

@@ -1,4 +1,5 @@
 #include <common/iteration/tresca_functional.h>
+#include <common/parallel/owned_values.h>
 #include <common/parallel/reductions.h>
 
 #include <algorithm>
@@ -66,13 +67,13 @@ namespace Friction
                                       const VectorType   &r,
                                       const ContactState &state) const
   {
-    double sum = 0;
-    for (unsigned int node = 0; node < problem.constraints.n_owned_nodes();
-         ++node)
-      if (!problem.constraints.is_hanging(node))
-        for (unsigned int i = dim * node; i < dim * (node + 1); ++i)
-          sum -= .5 * u.local_element(i) *
-            (r.local_element(i) + problem.forces.local_element(i));
+    // Rows of hanging nodes are empty.
+    const double *displacement = u.begin(), *residual = r.begin(),
+                 *force = problem.forces.begin();
+    double sum =
+      -.5 * sum_of_terms(u.locally_owned_size(), [=](const unsigned int i) {
+        return displacement[i] * (residual[i] + force[i]);
+      });
     if (state.has_friction())
       for (unsigned int p = 0; p < problem.contact.size(); ++p)
         {

@@ -3,6 +3,9 @@
 
 #include <deal.II/lac/la_parallel_vector.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace Friction
 {
   /**
@@ -37,6 +40,44 @@ namespace Friction
     DEAL_II_OPENMP_SIMD_PRAGMA
     for (unsigned int i = 0; i < n; ++i)
       values[i] += factor * added[i];
+  }
+
+  /** term(0) + ... + term(n-1), by four sums at once: with a single one, every
+   * addition would have to wait for the one before. */
+  template <typename Term>
+  inline double
+  sum_of_terms(const unsigned int n, const Term &term)
+  {
+    double       sums[4] = {0., 0., 0., 0.};
+    unsigned int i       = 0;
+    for (; i + 4 <= n; i += 4)
+      for (unsigned int lane = 0; lane < 4; ++lane)
+        sums[lane] += term(i + lane);
+    for (; i < n; ++i)
+      sums[0] += term(i);
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  }
+
+  /** This process' share of u . v. */
+  inline double
+  dot_owned(const OwnedValues &u, const OwnedValues &v)
+  {
+    AssertDimension(u.locally_owned_size(), v.locally_owned_size());
+    const double *a = u.begin(), *b = v.begin();
+    return sum_of_terms(u.locally_owned_size(),
+                        [=](const unsigned int i) { return a[i] * b[i]; });
+  }
+
+  /** The largest absolute value that this process has. */
+  inline double
+  largest_owned(const OwnedValues &v)
+  {
+    double        largest[4] = {0., 0., 0., 0.};
+    const double *values     = v.begin();
+    for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
+      largest[i % 4] = std::max(largest[i % 4], std::abs(values[i]));
+    return std::max(std::max(largest[0], largest[1]),
+                    std::max(largest[2], largest[3]));
   }
 } // namespace Friction
 

@@ -97,6 +97,8 @@ namespace
            "Solver/Inner tolerance=1e-12",
            "Solver/Outer tolerance=1e-11"}))
     {
+      iteration.begin();
+
       // Which node of the reference each node is. Contact nodes of the
       // reference have numbers of their own.
       for (const Point<3> &p : node_points(iteration.discretization()))

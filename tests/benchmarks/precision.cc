@@ -271,7 +271,7 @@ namespace Benchmark
     {
       NestedIteration<dim> nest(parameters);
       nest.begin();
-      const bool           exact = nest.scene().exact_displacement() != nullptr;
+      const bool exact = nest.scene().exact_displacement() != nullptr;
       if (exact && options.half_widths.empty())
         throw InputError(
           "A scene with an exact solution needs "
@@ -306,7 +306,7 @@ namespace Benchmark
                 nest.mark_all();
               else
                 nest.mark(nest.estimate());
-              nest.advance();
+              nest.refine();
               solve(nest);
             }
           compare_with_reference(nest);
@@ -406,12 +406,13 @@ namespace Benchmark
       zero.update_ghost_values();
       rows.back().energy_error = error(nest.displacement()) / error(zero);
 
-      const auto sizes = CoarseFunctions<dim>(d.dof_handler(),
-                                              nest.scene().contact_boundary_id(),
-                                              nest.displacement(),
-                                              nest.tractions())
-                           .on(d)
-                           .face_size;
+      const auto sizes =
+        CoarseFunctions<dim>(d.dof_handler(),
+                             nest.scene().contact_boundary_id(),
+                             nest.displacement(),
+                             nest.tractions())
+          .on(d)
+          .face_size;
       double difference = 0, norm = 0;
       for (const ContactNode<dim> &node : d.contact())
         {
