@@ -1,6 +1,8 @@
 #ifndef friction_nodes_node_block_h
 #define friction_nodes_node_block_h
 
+#include <deal.II/base/config.h>
+
 #include <array>
 #include <cmath>
 
@@ -39,10 +41,11 @@ namespace Friction
     return block;
   }
 
-  /** The product A x. */
+  /** The product A x. In the loops over nodes a call would cost more than the
+   * product. */
   template <int dim>
-  NodeValue<dim>
-  times(const double *A, const double *x)
+  inline DEAL_II_ALWAYS_INLINE NodeValue<dim>
+                               times(const double *A, const double *x)
   {
     NodeValue<dim> y{};
     for (int c = 0; c < dim; ++c)

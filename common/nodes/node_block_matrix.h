@@ -171,7 +171,7 @@ namespace Friction
   // sums of its own: with a single one every addition would have to wait for
   // the one before.
   template <int dim>
-  inline NodeValue<dim>
+  inline DEAL_II_ALWAYS_INLINE NodeValue<dim>
   NodeBlockMatrix<dim>::row_times(const unsigned int row, const double *x) const
   {
     const std::size_t   end = row_starts[row + 1];
