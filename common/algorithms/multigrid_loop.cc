@@ -90,7 +90,6 @@ namespace Friction
     const DiscreteProblem<dim> &problem = iteration.problem();
     const unsigned int          n_dofs  = x.u.locally_owned_size();
     MultigridResult             result;
-    VectorType                  last_u, last_residual;
 
     // What has to be summed over all processes goes together: the squares of
     // the last increment, of the iterate and of the truncated residual, the
@@ -116,10 +115,7 @@ namespace Friction
         iteration.functional().energy_share(x.u, x.residual, x.state);
       if (!first)
         {
-          const double *old_u = last_u.begin(), *old_r = last_residual.begin();
-          sums[increment] = sum_of_terms(n_dofs, [=](const unsigned int i) {
-            return (u[i] - old_u[i]) * (old_r[i] - r[i]);
-          });
+          sums[increment] = dot_owned(x.step, x.step_image);
           sums[residual] = dot_owned(iteration.truncated_residual(),
                                      iteration.truncated_residual());
           sums[truncated] = iteration.truncation().n_truncated_components();
@@ -132,8 +128,6 @@ namespace Friction
     double floor_of_norm = 0;
     for (unsigned int cycle = 1;; ++cycle)
       {
-        last_u           = x.u;
-        last_residual    = x.residual;
         CycleInfo info   = {};
         info.energy      = sums[energy];
         info.step_length = iteration.iterate(x);

@@ -3,6 +3,7 @@
 
 #include <common/contact/contact_state.h>
 #include <common/nodes/nodal_constraints.h>
+#include <common/parallel/owned_values.h>
 
 namespace Friction
 {
@@ -32,6 +33,44 @@ namespace Friction
 
     /// f - A u, once the leading relaxation has been there.
     VectorType residual;
+
+    /// The last step of the iteration, the difference of two smoothed iterates,
+    /// and A times it, that of their residuals. Empty before the first step.
+    VectorType step, step_image;
+
+    bool
+    has_step() const
+    {
+      return step.size() > 0;
+    }
+
+    /** Forgets the last step. */
+    void
+    forget_step()
+    {
+      step.reinit(0);
+      step_image.reinit(0);
+    }
+
+    /** To be called before a step, and after it. */
+    void
+    begin_step()
+    {
+      old_u        = u;
+      old_residual = residual;
+    }
+
+    void
+    end_step()
+    {
+      combine_owned(old_u, -1., 1., u);
+      combine_owned(old_residual, 1., -1., residual);
+      step.swap(old_u);
+      step_image.swap(old_residual);
+    }
+
+  private:
+    VectorType old_u, old_residual;
   };
 } // namespace Friction
 

@@ -60,6 +60,7 @@ namespace Friction
   MonotoneMultigrid<dim>::begin(Iterate &x)
   {
     step_control->begin();
+    x.forget_step();
     smoother->forward(x, smoothing_steps, /*trust first normal forces =*/true);
   }
 
@@ -69,6 +70,7 @@ namespace Friction
   double
   MonotoneMultigrid<dim>::iterate(Iterate &x)
   {
+    x.begin_step();
     linearization->update(x);
     updated_rows += correction->update(*linearization, x);
     linearization->linearize_residual(r, x);
@@ -78,6 +80,7 @@ namespace Friction
 
     smoother->backward(x, smoothing_steps);
     smoother->forward(x, smoothing_steps);
+    x.end_step();
     return length;
   }
 

@@ -21,43 +21,8 @@ namespace Friction
   void
   Recombination<dim>::clear()
   {
-    has_last = false;
-    steps.clear();
-    products.clear();
-  }
-
-
-
-  template <int dim>
-  void
-  Recombination<dim>::add_iterate(const VectorType &u,
-                                  const VectorType &residual)
-  {
-    if (n_steps == 0)
-      return;
-    if (has_last)
-      {
-        // The vectors of the oldest step are used again for the new one.
-        if (steps.size() == n_steps)
-          {
-            steps.push_front(std::move(steps.back()));
-            products.push_front(std::move(products.back()));
-            steps.pop_back();
-            products.pop_back();
-          }
-        else
-          {
-            steps.emplace_front(u);
-            products.emplace_front(u);
-          }
-        steps.front() = u;
-        add_owned(steps.front(), -1., last_iterate);
-        products.front() = last_residual;
-        add_owned(products.front(), -1., residual);
-      }
-    has_last      = true;
-    last_iterate  = u;
-    last_residual = residual;
+    older_steps.clear();
+    older_images.clear();
   }
 
 
@@ -66,25 +31,56 @@ namespace Friction
   unsigned int
   Recombination<dim>::improve(VectorType            &v,
                               VectorType            &Av,
+                              const Iterate         &x,
+                              const VectorType      &r,
+                              const Truncation<dim> &truncation)
+  {
+    if (n_steps == 0 || !x.has_step())
+      return 0;
+    const unsigned int n_used = combine(v, Av, x, r, truncation);
+    if (n_steps > 1)
+      {
+        older_steps.push_front(x.step);
+        older_images.push_front(x.step_image);
+        if (older_steps.size() == n_steps)
+          {
+            older_steps.pop_back();
+            older_images.pop_back();
+          }
+      }
+    return n_used;
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  Recombination<dim>::combine(VectorType            &v,
+                              VectorType            &Av,
+                              const Iterate         &x,
                               const VectorType      &r,
                               const Truncation<dim> &truncation) const
   {
+    std::vector<const VectorType *> steps    = {&x.step},
+                                    products = {&x.step_image};
+    for (unsigned int i = 0; i < older_steps.size(); ++i)
+      {
+        steps.push_back(&older_steps[i]);
+        products.push_back(&older_images[i]);
+      }
     std::vector<const VectorType *> basis = {&v}, images = {&Av};
-
-    if (steps.empty())
-      return 0;
 
     // Steps in the free subspace, up to the rounding of the iterates
     // themselves.
     const MPI_Comm      comm   = problem.communicator();
     const unsigned int  n_dofs = v.locally_owned_size();
     std::vector<double> deviations(1 + steps.size(), 0.);
-    deviations[0] = 1e-13 * largest_owned(last_iterate);
+    deviations[0] = 1e-13 * largest_owned(x.u);
     for (unsigned int i = 0; i < steps.size(); ++i)
       for (const unsigned int node : truncation.changed_nodes())
         if (dim * node < n_dofs)
           {
-            const double        *s = steps[i].begin() + dim * node;
+            const double        *s = steps[i]->begin() + dim * node;
             const NodeValue<dim> Ts =
               times<dim>(truncation.projector(node).data(), s);
             for (unsigned int d = 0; d < dim; ++d)
@@ -95,8 +91,8 @@ namespace Friction
     for (unsigned int i = 0; i < steps.size(); ++i)
       if (deviations[1 + i] <= deviations[0])
         {
-          basis.push_back(&steps[i]);
-          images.push_back(&products[i]);
+          basis.push_back(steps[i]);
+          images.push_back(products[i]);
         }
     const unsigned int n = basis.size();
     if (n == 1)
@@ -116,14 +112,31 @@ namespace Friction
       return sum;
     };
 
-    // All scalar products in one reduction.
-    std::vector<double> products_of_all;
-    for (unsigned int i = 0; i < n; ++i)
+    // All scalar products in one reduction, and in one pass over the vectors:
+    // what has come from memory for one product is there for the others.
+    std::vector<double>    products_of_all(n + n * (n + 1) / 2, 0.);
+    constexpr unsigned int chunk = 512;
+    for (unsigned int begin = 0; begin < n_dofs; begin += chunk)
       {
-        products_of_all.push_back(dot_owned(r, *basis[i]));
+        double    *sum   = products_of_all.data();
+        const auto share = [&](const VectorType &a, const VectorType &b) {
+          const double *a_here = a.begin() + begin, *b_here = b.begin() + begin;
+          return sum_of_terms(
+            std::min(chunk, n_dofs - begin),
+            [=](const unsigned int i) { return a_here[i] * b_here[i]; });
+        };
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            *sum++ += share(r, *basis[i]);
+            for (unsigned int j = 0; j <= i; ++j)
+              *sum++ += share(*basis[i], *images[j]);
+          }
+      }
+    for (unsigned int i = 0, entry = 0; i < n; ++i)
+      {
+        ++entry;
         for (unsigned int j = 0; j <= i; ++j)
-          products_of_all.push_back(dot_owned(*basis[i], *images[j]) +
-                                    friction(*basis[i], *basis[j]));
+          products_of_all[entry++] += friction(*basis[i], *basis[j]);
       }
     sum_over_processes(products_of_all, comm);
     // A direction without energy, like a correction from coarse levels on which
@@ -133,9 +146,9 @@ namespace Friction
     if (coefficients.empty())
       return 0;
 
-    scale_owned(v, coefficients[0]);
-    scale_owned(Av, coefficients[0]);
-    for (unsigned int i = 1; i < n; ++i)
+    combine_owned(v, coefficients[0], coefficients[1], *basis[1]);
+    combine_owned(Av, coefficients[0], coefficients[1], *images[1]);
+    for (unsigned int i = 2; i < n; ++i)
       {
         add_owned(v, coefficients[i], *basis[i]);
         add_owned(Av, coefficients[i], *images[i]);

@@ -2,6 +2,7 @@
 #define friction_iteration_recombination_h
 
 #include <common/discretization/discrete_problem.h>
+#include <common/iteration/iterate.h>
 #include <common/nodes/truncation.h>
 
 #include <deque>
@@ -34,30 +35,35 @@ namespace Friction
     Recombination(const DiscreteProblem<dim> &problem,
                   const unsigned int          n_steps);
 
-    /** Forgets all steps. */
+    /** Forgets all steps but the last, which is that of the iterate. */
     void clear();
-
-    /** Takes notice of a smoothed iterate and its residual f - A u. */
-    void add_iterate(const VectorType &u, const VectorType &residual);
 
     /**
      * Replaces the correction @p v, with product @p Av = A v, by the
      * combination of v and previous steps that minimises the energy of the
      * linearised problem with truncated residual @p r, the second derivative of
      * friction in @p truncation included; @p Av is updated alike.
-     * Returns the number of previous steps that took part. Collective.
+     * @param x  the smoothed iterate, which knows its last step.
+     * @return the number of previous steps that took part. Collective.
      */
     unsigned int improve(VectorType            &v,
                          VectorType            &Av,
+                         const Iterate         &x,
                          const VectorType      &r,
-                         const Truncation<dim> &truncation) const;
+                         const Truncation<dim> &truncation);
 
   private:
     const DiscreteProblem<dim> &problem;
     const unsigned int          n_steps;
-    bool                        has_last = false;
-    VectorType                  last_iterate, last_residual;
-    std::deque<VectorType>      steps, products;
+
+    // Those before the last one, latest first.
+    std::deque<VectorType> older_steps, older_images;
+
+    unsigned int combine(VectorType            &v,
+                         VectorType            &Av,
+                         const Iterate         &x,
+                         const VectorType      &r,
+                         const Truncation<dim> &truncation) const;
   };
 } // namespace Friction
 

@@ -66,8 +66,7 @@ namespace Friction
     const PhaseScope phase(problem.communicator(), SolverPhase::line_search);
     Av.reinit(v, true);
     problem.stiffness.vmult(Av, v);
-    recombination.add_iterate(x.u, x.residual);
-    recombination.improve(v, Av, r, truncation);
+    recombination.improve(v, Av, x, r, truncation);
 
     // Where a node would have to reverse its slip, the linearisation knows
     // nothing of what comes. A single such node would hold up all others in the

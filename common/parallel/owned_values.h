@@ -42,6 +42,24 @@ namespace Friction
       values[i] += factor * added[i];
   }
 
+  /** u := a u + b v. */
+  inline void
+  combine_owned(OwnedValues       &u,
+                const double       a,
+                const double       b,
+                const OwnedValues &v)
+  {
+    AssertIsFinite(a);
+    AssertIsFinite(b);
+    AssertDimension(u.locally_owned_size(), v.locally_owned_size());
+    double            *values = u.begin();
+    const double      *added  = v.begin();
+    const unsigned int n      = u.locally_owned_size();
+    DEAL_II_OPENMP_SIMD_PRAGMA
+    for (unsigned int i = 0; i < n; ++i)
+      values[i] = a * values[i] + b * added[i];
+  }
+
   /** term(0) + ... + term(n-1), by four sums at once: with a single one, every
    * addition would have to wait for the one before. */
   template <typename Term>

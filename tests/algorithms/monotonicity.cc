@@ -18,8 +18,8 @@
 
 #include <tests/support/check.h>
 
-#include <tests/support/discretized.h>
 #include "../support/random_problem.h"
+#include <tests/support/discretized.h>
 
 using namespace Tests;
 
@@ -77,7 +77,8 @@ namespace
 
       VectorType         u = admissible_start(discretization);
       ContactState       state(discretization.contact().size(), true);
-      ContactSolver<dim> solver(discretization, without_safeguards(parameters.solver));
+      ContactSolver<dim> solver(discretization,
+                                without_safeguards(parameters.solver));
       converged      = solver.solve(u, state).converged;
       length         = u.linfty_norm();
       double largest = 0;
@@ -140,12 +141,10 @@ namespace
     unsigned int
     n_hanging_at_contact(const ContactState &state, const bool sticks) const
     {
-      return Tests::n_hanging_at_contact<dim>(discretization,
-                                              scene.contact_boundary_id(),
-                                              [&](const unsigned int p) {
-                                                return state.in_contact(p) &&
-                                                  state.sticks(p) == sticks;
-                                              });
+      return Tests::n_hanging_at_contact<dim>(
+        discretization, scene.contact_boundary_id(), [&](const unsigned int p) {
+          return state.in_contact(p) && state.sticks(p) == sticks;
+        });
     }
 
     VectorType
@@ -412,14 +411,14 @@ namespace
               if (variant == 4)
                 settings.truncation = TruncationVariant::contact;
 
-              VectorType             u(u_0);
-              ContactState           state = fixture.initial_state();
-              ContactSolver<dim>     solver(
+              VectorType         u(u_0);
+              ContactState       state = fixture.initial_state();
+              ContactSolver<dim> solver(
                 d.dof_handler(), problem, without_safeguards(settings));
-              const double           first  = functional.energy(u, state);
-              const SolverReport     result = solver.solve(u, state);
-              converged                     = converged && result.converged;
-              double last                   = first;
+              const double       first  = functional.energy(u, state);
+              const SolverReport result = solver.solve(u, state);
+              converged                 = converged && result.converged;
+              double last               = first;
               for (const CycleInfo &info : result.cycles)
                 {
                   increase =
@@ -432,13 +431,10 @@ namespace
               penetration =
                 std::max(penetration,
                          functional.largest_penetration(u) / fixture.length);
-              certificate =
-                std::max(certificate,
-                         make_certificate(problem,
-                                          u,
-                                          fixture.residual(u),
-                                          state)
-                           .largest());
+              certificate = std::max(
+                certificate,
+                make_certificate(problem, u, fixture.residual(u), state)
+                  .largest());
               for (unsigned int p = 0; p < state.size(); ++p)
                 converged = converged &&
                   state.normal_force(p) == fixture.normal_forces[p];
@@ -546,7 +542,7 @@ namespace
   void
   projection(TrescaProblem<dim> &fixture)
   {
-    const Discretization<dim>  &d = fixture.discretization;
+    const Discretization<dim>  &d       = fixture.discretization;
     const DiscreteProblem<dim>  problem = fixture.problem();
     const TrescaFunctional<dim> functional(problem);
 
@@ -628,9 +624,8 @@ namespace
     const DiscreteProblem<dim> problem = fixture.problem();
     VectorType                 u       = fixture.random_start();
     ContactState               state   = fixture.initial_state();
-    ContactSolver<dim>(d.dof_handler(),
-                       problem,
-                       without_safeguards(SolverSettings()))
+    ContactSolver<dim>(
+      d.dof_handler(), problem, without_safeguards(SolverSettings()))
       .solve(u, state);
     Linearization<dim> linearization(problem, TruncationVariant::phases);
     const Iterate      iterate(u, state);
@@ -666,7 +661,8 @@ namespace
     const auto precondition = [&](const VectorType &r) {
       VectorType v(r), w(r);
       coarse.apply(v, r);
-      for (unsigned int node = 0; node < d.constraints().n_owned_nodes(); ++node)
+      for (unsigned int node = 0; node < d.constraints().n_owned_nodes();
+           ++node)
         if (!d.constraints().is_hanging(node))
           {
             const double *block  = d.stiffness().diagonal_block(node);
@@ -710,17 +706,22 @@ namespace
         Recombination<dim> recombination(problem, n_steps);
         VectorType         x(b);
         x = 0.;
+        Iterate smoothed(x, state);
         needed.push_back(1000);
         for (unsigned int k = 0; k < 100; ++k)
           {
-            recombination.add_iterate(x, residual(x));
+            smoothed.residual = residual(x);
+            if (k > 0)
+              smoothed.end_step();
+            smoothed.begin_step();
             const VectorType r  = truncated_residual(x);
             VectorType       v  = precondition(r);
             VectorType       Av = fixture.product(v);
 
             const double       alone = (r * v) * (r * v) / square(v, Av);
-            const unsigned int n = recombination.improve(v, Av, r, truncation);
-            const double       together = (r * v) * (r * v) / square(v, Av);
+            const unsigned int n =
+              recombination.improve(v, Av, smoothed, r, truncation);
+            const double together = (r * v) * (r * v) / square(v, Av);
             if (k < n_iterations)
               {
                 participants = participants && n == std::min(k, n_steps);
@@ -765,9 +766,12 @@ namespace
     Recombination<dim> one_step(problem, 1);
     VectorType         x(b);
     x = 0.;
-    one_step.add_iterate(x, residual(x));
-    x = precondition(truncated_residual(x));
-    one_step.add_iterate(x, residual(x));
+    Iterate smoothed(x, state);
+    smoothed.residual = residual(x);
+    smoothed.begin_step();
+    x                 = precondition(truncated_residual(x));
+    smoothed.residual = residual(x);
+    smoothed.end_step();
     const VectorType r     = truncated_residual(x);
     VectorType       v     = precondition(r);
     VectorType       Av    = fixture.product(v);
@@ -779,10 +783,10 @@ namespace
     Truncation<dim> other(truncation);
     other.set(moved, zero_block<dim>(), zero_block<dim>());
     VectorType w(v), Aw(Av);
-    const bool left_out = one_step.improve(w, Aw, r, other) == 0;
+    const bool left_out = one_step.improve(w, Aw, smoothed, r, other) == 0;
     w -= v;
     check(left_out && w.linfty_norm() == 0 &&
-            one_step.improve(v, Av, r, truncation) == 1,
+            one_step.improve(v, Av, smoothed, r, truncation) == 1,
           "steps out of the free subspace are left out");
   }
 
