@@ -12,6 +12,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <sstream>
 

@@ -205,9 +205,10 @@ namespace Friction
   {
     if (is_last())
       return false;
-    const bool adaptive =
-      the_parameters.refinement.strategy == RefinementStrategy::adaptive;
-    if (!mark(adaptive ? estimate() : ErrorEstimate()))
+    const bool needed =
+      the_parameters.refinement.strategy == RefinementStrategy::adaptive ||
+      the_parameters.solver.stop_at_discretization;
+    if (!mark(needed ? estimate() : ErrorEstimate()))
       return false;
     refine();
     return true;

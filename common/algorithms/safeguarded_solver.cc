@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <memory>
 #include <sstream>
 
 namespace Friction
@@ -110,7 +111,10 @@ namespace Friction
                   settings.recombined_steps)
     , short_steps(
         iteration.functional(), std::min(.5, settings.maximum_step_length), 0)
-  {}
+  {
+    Assert(&problem == &iteration.problem(),
+           ExcMessage("The iteration is that of another problem."));
+  }
 
 
 
@@ -329,6 +333,9 @@ namespace Friction
   SafeguardedSolver<dim>::continuation(const Search &search)
   {
     const double target = problem.friction_coefficient;
+    // Also if a callback throws.
+    const std::shared_ptr<void> restores_coefficient(
+      nullptr, [&](void *) { problem.friction_coefficient = target; });
     // Where most problems are easy.
     constexpr double easy            = .25;
     constexpr double smallest_factor = 1.05;
@@ -343,7 +350,6 @@ namespace Friction
         ContactState next_state      = search.state;
         problem.friction_coefficient = coefficient;
         report = mixed_algorithm_2({next, next_state, steps, search.progress});
-        problem.friction_coefficient = target;
         if (report.converged)
           {
             solved       = coefficient;

@@ -4,6 +4,7 @@
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 
 #include <algorithm>
+#include <array>
 
 namespace Friction
 {
@@ -57,8 +58,11 @@ namespace Friction
     const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
     const Truncation<dim> &truncation = linearization.truncation();
     bool                   changed    = !is_filled;
-    for (const unsigned int node : truncation.changed_nodes())
-      changed = changed || !current.agrees(truncation, node);
+    const std::array<const Truncation<dim> *, 2> both = {
+      {&truncation, &current}};
+    for (const Truncation<dim> *one : both)
+      for (const unsigned int node : one->changed_nodes())
+        changed = changed || !current.agrees(truncation, node);
     if (!true_on_any_process(changed, problem.communicator()))
       return 0;
     current = truncation;

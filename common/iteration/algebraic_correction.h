@@ -26,6 +26,7 @@ namespace Friction
     /** Collective. @p problem is kept by reference. */
     AlgebraicCorrection(const DiscreteProblem<dim> &problem,
                         const CoarsestMethod        method);
+    AlgebraicCorrection(DiscreteProblem<dim> &&, const CoarsestMethod) = delete;
 
     std::size_t update(const Linearization<dim> &linearization,
                        const Iterate            &x) override;

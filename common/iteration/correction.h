@@ -38,8 +38,13 @@ namespace Friction
      */
     virtual void apply(VectorType &v, const VectorType &r) = 0;
 
-    /** Of vectors and matrices of its own, in bytes on this process. */
-    virtual std::size_t memory_consumption() const = 0;
+    /** Of the vectors and matrices that it works with, those of the levels
+     * included, in bytes on this process. */
+    virtual std::size_t
+    memory_consumption() const
+    {
+      return 0;
+    }
   };
 } // namespace Friction
 

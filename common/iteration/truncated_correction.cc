@@ -154,7 +154,7 @@ namespace Friction
   std::size_t
   TruncatedCorrection<dim>::memory_consumption() const
   {
-    std::size_t bytes = 0;
+    std::size_t bytes = levels.memory_consumption();
     for (const auto &vectors : {&rhs, &correction, &start, &defect, &work})
       for (const VectorType &vector : *vectors)
         bytes += vector.memory_consumption();

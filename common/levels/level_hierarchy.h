@@ -205,7 +205,7 @@ namespace Friction
       }
 
       /** The ghosts that are parents of what this process owns, or at its own
-       * leaf nodes: what transfers need. */
+       * leaf nodes: what the restriction of bounds needs. */
       const std::vector<unsigned int> &
       transfer_ghosts() const
       {

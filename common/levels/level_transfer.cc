@@ -67,6 +67,9 @@ namespace Friction
                                          VectorType        &fine,
                                          const VectorType  &coarse) const
   {
+    // deal.II adds to owned values, and from 9.7 on refuses to where ghosts
+    // hold values of which it does not know.
+    fine.zero_out_ghost_values();
     transfer.prolongate_and_add(k, fine, coarse);
   }
 

@@ -46,7 +46,8 @@ namespace Friction
                           VectorType        &coarse,
                           const VectorType  &fine) const;
 
-    /** fine += P coarse, from level @p k - 1 to level @p k. Collective. */
+    /** fine += P coarse, from level @p k - 1 to level @p k. The ghosts of
+     * @p fine are zero on return. Collective. */
     void prolongate_and_add(const unsigned int k,
                             VectorType        &fine,
                             const VectorType  &coarse) const;

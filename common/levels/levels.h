@@ -39,6 +39,9 @@ namespace Friction
     Levels(const DoFHandler<dim>      &dof_handler,
            const DiscreteProblem<dim> &problem,
            const CoarsestMethod coarsest_method = CoarsestMethod::automatic);
+    Levels(const DoFHandler<dim> &,
+           DiscreteProblem<dim> &&,
+           const CoarsestMethod = {}) = delete;
 
     const LevelHierarchy<dim> &
     hierarchy() const

@@ -16,8 +16,8 @@
 
 #include <tests/support/check.h>
 
-#include <tests/support/discretized.h>
 #include "../support/random_problem.h"
+#include <tests/support/discretized.h>
 
 using namespace Tests;
 
@@ -63,10 +63,10 @@ namespace
   compare_algorithms()
   {
     std::cout << "Algorithms 2 and 3" << std::endl;
-    NestedIteration<2> iteration(read_parameters(
-      SCENES_DIR "/hertz.prm", {"Refinement/Maximum dofs=1500"}));
+    NestedIteration<2> iteration(without_safeguards(read_parameters(
+      SCENES_DIR "/hertz.prm", {"Refinement/Maximum dofs=1500"})));
     iteration.begin();
-    SolverSettings     fixed_point  = iteration.parameters().solver;
+    SolverSettings fixed_point      = iteration.parameters().solver;
     fixed_point.algorithm           = Algorithm::fixed_point;
     SolverSettings damped           = fixed_point;
     damped.outer_damping            = 0.5;
@@ -81,12 +81,13 @@ namespace
         VectorType         u;
         ContactState       state(0, false);
         const SolverReport report = iteration.solve_with(fixed_point, u, state);
-        converged = converged && iteration.report().converged && report.converged;
-        outer     = std::max(outer, report.outer_iterations);
-        displacement = std::max(displacement,
-                                largest_difference(u, iteration.displacement()) /
-                                  u.linfty_norm());
-        force        = std::max(
+        converged =
+          converged && iteration.report().converged && report.converged;
+        outer        = std::max(outer, report.outer_iterations);
+        displacement = std::max(
+          displacement,
+          largest_difference(u, iteration.displacement()) / u.linfty_norm());
+        force = std::max(
           force,
           largest_difference(report.residual, iteration.report().residual) /
             report.residual.linfty_norm());
@@ -204,12 +205,12 @@ namespace
   compare_guesses()
   {
     std::cout << "initial guess" << std::endl;
-    NestedIteration<2> iteration(read_parameters(
-      SCENES_DIR "/hertz.prm", {"Refinement/Maximum dofs=1500"}));
+    NestedIteration<2> iteration(without_safeguards(read_parameters(
+      SCENES_DIR "/hertz.prm", {"Refinement/Maximum dofs=1500"})));
     iteration.begin();
-    bool               admissible = true, prescribed = true, positive = true;
-    double             total = 0;
-    unsigned int       warm = 0, cold = 0;
+    bool         admissible = true, prescribed = true, positive = true;
+    double       total = 0;
+    unsigned int warm = 0, cold = 0;
     do
       {
         const Discretization<2>   &d       = iteration.discretization();
@@ -243,7 +244,9 @@ namespace
             u                      = admissible_start(d);
             ContactState     state = ContactState(guess.size(), true);
             ContactSolver<2> solver(
-              d.dof_handler(), problem, without_safeguards(iteration.parameters().solver));
+              d.dof_handler(),
+              problem,
+              without_safeguards(iteration.parameters().solver));
             cold += solver.solve(u, state).cycles.size();
           }
     } while (iteration.advance());
@@ -264,8 +267,8 @@ namespace
     const auto make = [](const std::vector<std::string> &more) {
       std::vector<std::string> overrides = {"Refinement/Maximum dofs=600"};
       overrides.insert(overrides.end(), more.begin(), more.end());
-      auto nest = std::make_unique<NestedIteration<2>>(
-        read_parameters(SCENES_DIR "/hertz.prm", overrides));
+      auto nest = std::make_unique<NestedIteration<2>>(without_safeguards(
+        read_parameters(SCENES_DIR "/hertz.prm", overrides)));
       nest->begin();
       return nest;
     };
@@ -327,8 +330,8 @@ namespace
         DiscreteProblem<2> problem   = d.problem();
         problem.friction_law         = law;
         problem.friction_coefficient = law == FrictionLaw::none ? 0.4 : 0.;
-        VectorType           u       = admissible_start(d);
-        ContactState         state(d.contact().size(), problem.has_friction());
+        VectorType         u         = admissible_start(d);
+        ContactState       state(d.contact().size(), problem.has_friction());
         ContactSolver<2>   solver(d.dof_handler(),
                                 problem,
                                 without_safeguards(none->parameters().solver));

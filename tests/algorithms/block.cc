@@ -48,8 +48,8 @@ namespace
                      {override("Refinement/Initial refinements", refinements),
                       "Solver/Inner tolerance=1e-12",
                       "Solver/Outer tolerance=1e-11"});
-    NestedIteration<2> iteration(
-      read_parameters(SCENES_DIR "/" + scene + ".prm", overrides));
+    NestedIteration<2> iteration(without_safeguards(
+      read_parameters(SCENES_DIR "/" + scene + ".prm", overrides)));
     iteration.begin();
     const Discretization<2> &d = iteration.discretization();
 

@@ -150,14 +150,14 @@ namespace
     if (body.scene != "half-ball")
       displacement << "; 2: " << body.push[0] << ", " << body.push[1] << ", "
                    << body.push[2];
-    const Parameters parameters =
+    const Parameters parameters = without_safeguards(
       read_parameters(SCENES_3D_DIR "/" + body.scene + ".prm",
                       {friction.str(),
                        displacement.str(),
                        "Contact/Friction law=Coulomb",
                        "Refinement/Initial refinements=1",
-                       "Solver/Inner tolerance=1e-12"});
-    NestedIteration<3>                iteration(parameters);
+                       "Solver/Inner tolerance=1e-12"}));
+    NestedIteration<3> iteration(parameters);
     iteration.begin();
     const Discretization<3>          &d = iteration.discretization();
     const Reference::ContactProblem3D problem =
@@ -335,13 +335,13 @@ namespace
       const std::vector<std::string> &overrides)
   {
     std::cout << what << std::endl;
-    Parameters parameters =
-      read_parameters(SCENES_3D_DIR "/" + scene + ".prm", overrides);
+    Parameters parameters = without_safeguards(
+      read_parameters(SCENES_3D_DIR "/" + scene + ".prm", overrides));
     NestedIteration<3> iteration(parameters);
     iteration.begin();
-    bool               converged = true;
-    unsigned int       n_cycles = 0, n_different = 0;
-    double             largest_difference = 0, largest_imbalance = 0;
+    bool         converged = true;
+    unsigned int n_cycles = 0, n_different = 0;
+    double       largest_difference = 0, largest_imbalance = 0;
     do
       {
         iteration.solve();

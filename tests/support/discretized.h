@@ -78,12 +78,21 @@ namespace Tests
 
 
 
-  /** The settings for a test that wants to see the first attempt fail. */
+  /** The settings for a test that wants to see the first attempt fail: what it
+   * tests must not be rescued by something else. */
   inline SolverSettings
   without_safeguards(SolverSettings settings)
   {
     settings.safeguards = false;
     return settings;
+  }
+
+  /** A scene, likewise. */
+  inline Parameters
+  without_safeguards(Parameters parameters)
+  {
+    parameters.solver.safeguards = false;
+    return parameters;
   }
 } // namespace Tests
 

@@ -161,8 +161,8 @@ namespace Benchmark
     , seconds(seconds)
     , limit(limit)
     , points(node_points(nest.discretization()))
-    , bonded(
-        bond(nest.discretization().problem(), nest.displacement(), nest.state()))
+    , bonded(bond(
+        nest.discretization().problem(), nest.displacement(), nest.state()))
   {}
 
 
@@ -243,7 +243,8 @@ namespace Benchmark
     out << "# scene=" << nest.parameters().name
         << " dofs=" << nest.discretization().dof_handler().n_dofs()
         << " friction=" << nest.parameters().contact.friction_coefficient
-        << " poisson=" << nest.parameters().material.poisson_ratio() << std::endl;
+        << " poisson=" << nest.parameters().material.poisson_ratio()
+        << std::endl;
     if (n_coarser > 0)
       {
         VectorType difference(*nest.guess()[0]);
@@ -298,8 +299,8 @@ namespace Benchmark
     BaselineReport report;
     report.converged  = solution.converged;
     report.iterations = solution.cycles.size();
-    report.memory     = solver.levels().hierarchy().memory_consumption() +
-      solver.levels().memory_consumption() + solution.solver_memory;
+    report.memory =
+      solver.levels().hierarchy().memory_consumption() + solution.solver_memory;
     if (!solution.attempts.empty())
       {
         report.n_attempts = solution.attempts.size();
