@@ -228,9 +228,11 @@ namespace StepFriction2d
                                       mu * g_i[c_j] * g_j[c_i] +
                                       (c_i == c_j ? mu * (g_i * g_j) : 0.)) *
                   fe_values.JxW(q);
-                cell_matrix(j, i) = cell_matrix(i, j);
               }
           }
+      for (const unsigned int i : fe_values.dof_indices())
+        for (const unsigned int j : fe_values.dof_indices_ending_at(i))
+          cell_matrix(j, i) = cell_matrix(i, j);
     });
   }
 

@@ -114,11 +114,20 @@ namespace Friction
 
   template <int dim>
   bool
+  NestedIteration<dim>::needs_estimate() const
+  {
+    return !is_last() &&
+      (the_parameters.refinement.strategy == RefinementStrategy::adaptive ||
+       the_parameters.solver.stop_at_discretization);
+  }
+
+
+
+  template <int dim>
+  bool
   NestedIteration<dim>::wants_estimate() const
   {
-    return the_parameters.refinement.estimate_error ||
-      (the_parameters.refinement.strategy == RefinementStrategy::adaptive &&
-       !is_last());
+    return the_parameters.refinement.estimate_error || needs_estimate();
   }
 
 
@@ -205,10 +214,7 @@ namespace Friction
   {
     if (is_last())
       return false;
-    const bool needed =
-      the_parameters.refinement.strategy == RefinementStrategy::adaptive ||
-      the_parameters.solver.stop_at_discretization;
-    if (!mark(needed ? estimate() : ErrorEstimate()))
+    if (!mark(needs_estimate() ? estimate() : ErrorEstimate()))
       return false;
     refine();
     return true;

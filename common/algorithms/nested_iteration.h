@@ -177,6 +177,9 @@ namespace Friction
     }
 
   private:
+    /** Whether the next mesh, or its solution, depends on an estimate. */
+    bool needs_estimate() const;
+
     const Parameters    the_parameters;
     const Scene<dim>    the_scene;
     const CellForm<dim> bilinear_form;

@@ -28,20 +28,6 @@ namespace Friction
       values[i] *= factor;
   }
 
-  /** u := u + factor v. */
-  inline void
-  add_owned(OwnedValues &u, const double factor, const OwnedValues &v)
-  {
-    AssertIsFinite(factor);
-    AssertDimension(u.locally_owned_size(), v.locally_owned_size());
-    double            *values = u.begin();
-    const double      *added  = v.begin();
-    const unsigned int n      = u.locally_owned_size();
-    DEAL_II_OPENMP_SIMD_PRAGMA
-    for (unsigned int i = 0; i < n; ++i)
-      values[i] += factor * added[i];
-  }
-
   /** u := a u + b v. */
   inline void
   combine_owned(OwnedValues       &u,
@@ -58,6 +44,13 @@ namespace Friction
     DEAL_II_OPENMP_SIMD_PRAGMA
     for (unsigned int i = 0; i < n; ++i)
       values[i] = a * values[i] + b * added[i];
+  }
+
+  /** u := u + factor v. */
+  inline void
+  add_owned(OwnedValues &u, const double factor, const OwnedValues &v)
+  {
+    combine_owned(u, 1., factor, v);
   }
 
   /** term(0) + ... + term(n-1), by four sums at once: with a single one, every

@@ -50,12 +50,7 @@ namespace
   void
   check(const bool good, const std::string &what)
   {
-    const bool all_good =
-      Utilities::MPI::min(good ? 1 : 0, MPI_COMM_WORLD) == 1;
-    if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-      output << (all_good ? "ok      " : "FAILED  ") << what << std::endl;
-    if (!all_good)
-      Tests::FailedChecks::add();
+    Tests::check_everywhere(good, what, output);
   }
 
 

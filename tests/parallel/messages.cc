@@ -27,17 +27,6 @@ static_assert(!std::is_copy_constructible<GhostExchange>::value &&
 namespace
 {
   void
-  check_everywhere(const bool good, const std::string &what)
-  {
-    const bool all_good =
-      Utilities::MPI::min(good ? 1 : 0, MPI_COMM_WORLD) == 1;
-    if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-      check(all_good, what);
-  }
-
-
-
-  void
   test_foreign_messages(const Discretized<2> &d, const SolverSettings &settings)
   {
     const int rank = Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);

@@ -1,6 +1,8 @@
 #ifndef friction_tests_support_check_h
 #define friction_tests_support_check_h
 
+#include <deal.II/base/mpi.h>
+
 #include <cstdlib>
 #include <iostream>
 #include <sstream>
@@ -40,10 +42,29 @@ namespace Tests
   /** Prints the outcome of a check: only that, so that no digits are compared.
    */
   inline void
-  check(const bool condition, const std::string &what)
+  check(const bool         condition,
+        const std::string &what,
+        std::ostream      &out = std::cout)
   {
-    std::cout << (condition ? "ok      " : "FAILED  ") << what << std::endl;
+    out << (condition ? "ok      " : "FAILED  ") << what << std::endl;
     if (!condition)
+      FailedChecks::add();
+  }
+
+
+
+  /** The same on several processes, all of which have to agree: the first one
+   * prints. */
+  inline void
+  check_everywhere(const bool         condition,
+                   const std::string &what,
+                   std::ostream      &out = std::cout)
+  {
+    const bool all =
+      dealii::Utilities::MPI::min(condition ? 1 : 0, MPI_COMM_WORLD) == 1;
+    if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+      check(all, what, out);
+    else if (!all)
       FailedChecks::add();
   }
 
