@@ -160,7 +160,8 @@ namespace StepFriction2d
                           output.last_level().dofs);
       }
     else
-      triangulation->refine_global(parameters.refinement.initial_refinements);
+      refine_uniformly(*triangulation,
+                       parameters.refinement.initial_refinements);
 
     discretization.set_up();
     displacement = discretization.vector();
@@ -168,6 +169,7 @@ namespace StepFriction2d
     if (start == Start::from_checkpoint)
       Checkpoints::load_vectors(discretization.dof_handler(),
                                 {&displacement, &tractions});
+    output.check_start(discretization);
     return level;
   }
 
@@ -476,7 +478,10 @@ namespace StepFriction2d
             return false;
           }
         if (last || !mark_cells(estimate))
-          return true;
+          {
+            output.check_end(discretization, displacement, state);
+            return true;
+          }
 
         // Nested iteration: the displacement and the contact tractions are
         // interpolated to the refined mesh as they are. Tractions rather than

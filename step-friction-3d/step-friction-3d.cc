@@ -59,6 +59,7 @@ namespace StepFriction3d
         nest.add_estimate(output.last_level().estimated_error,
                           output.last_level().dofs);
       }
+    output.check_start(nest.discretization());
   }
 
 

@@ -1,4 +1,5 @@
 #include <common/algorithms/initial_guess.h>
+#include <common/parallel/collective_error.h>
 
 #include <algorithm>
 
@@ -14,19 +15,25 @@ namespace Friction
     const Scene<dim>           &scene   = discretization.scene();
     ContactState state(contact.size(), discretization.problem().has_friction());
     discretization.constraints().impose(u);
-    for (unsigned int p = 0; p < contact.size(); ++p)
-      {
-        const ContactNode<dim> &node   = contact[p];
-        const double            excess = normal_component(node, u) - node.gap;
-        if (excess > 0)
-          for (unsigned int d = 0; d < dim; ++d)
-            u.local_element(dim * node.node + d) -= excess * node.normal()[d];
-        const double stress = scene.friction_law() == FrictionLaw::tresca
-          ? scene.friction_bound()->value(node.point)
-          : std::max(0., -normal_component(node, tractions));
-        state.set_normal_force(p, node.measure * stress);
-        state.set(p, excess >= 0, false);
-      }
+    on_all_processes(discretization.constraints().communicator(), [&]() {
+      for (unsigned int p = 0; p < contact.size(); ++p)
+        {
+          const ContactNode<dim> &node   = contact[p];
+          const double            excess = normal_component(node, u) - node.gap;
+          if (excess > 0)
+            for (unsigned int d = 0; d < dim; ++d)
+              u.local_element(dim * node.node + d) -= excess * node.normal()[d];
+          const double stress = scene.friction_law() == FrictionLaw::tresca
+            ? scene.friction_bound()->value(node.point)
+            : std::max(0., -normal_component(node, tractions));
+          if (stress < 0.)
+            throw InputError(
+              "'Contact/Friction bound' is negative at a node of "
+              "the contact boundary; make it positive or zero.");
+          state.set_normal_force(p, node.measure * stress);
+          state.set(p, excess >= 0, false);
+        }
+    });
     return state;
   }
 

@@ -29,7 +29,8 @@ namespace Friction
   NestedIteration<dim>::begin()
   {
     the_scene.make_coarse_mesh(*triangulation);
-    triangulation->refine_global(the_parameters.refinement.initial_refinements);
+    refine_uniformly(*triangulation,
+                     the_parameters.refinement.initial_refinements);
     begin_on_level(0);
   }
 

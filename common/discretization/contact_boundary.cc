@@ -165,7 +165,8 @@ namespace Friction
             node.node     = entry.first;
             node.point    = entry.second;
             node.measure  = measures.local_element(dim * entry.first);
-            node.frame[0] = scene.contact_normal() == ContactNormal::body
+            node.frame[0] = (scene.contact_normal() == ContactNormal::body ||
+                             scene.obstacle().empty())
               ? normal / normal.norm()
               : scene.obstacle().normal(entry.second);
             add_node(node, constraints, scene);
@@ -212,7 +213,8 @@ namespace Friction
             prescribed_value * normal - gap >
               1e-8 * (std::abs(gap) + prescribed_value.norm()))
           throw InputError(
-            "the prescribed displacement of the node at " + describe(node.point) +
+            "the prescribed displacement of the node at " +
+            describe(node.point) +
             ", which also lies on the contact boundary, pushes it into the "
             "obstacle by " +
             std::to_string(prescribed_value * normal - gap) +

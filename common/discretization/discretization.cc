@@ -2,6 +2,7 @@
 #include <common/discretization/discretization.h>
 #include <common/discretization/leaf_matrix.h>
 #include <common/discretization/node_numbering.h>
+#include <common/parallel/collective_error.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/timer.h>
@@ -65,15 +66,14 @@ namespace Friction
     contact_boundary = std::make_unique<ContactBoundary<dim>>(
       the_mapping, dofs, hanging, *nodal_constraints, the_scene);
     const FrictionLaw law = the_scene.friction_law();
-    discrete_problem      = std::make_unique<DiscreteProblem<dim>>(
-      DiscreteProblem<dim>{leaf_operator,
-                           forces,
-                           *nodal_constraints,
-                           *contact_boundary,
-                           law,
-                           law == FrictionLaw::tresca ?
-                                  1. :
-                                  the_scene.friction_coefficient()});
+    discrete_problem =
+      std::make_unique<DiscreteProblem<dim>>(DiscreteProblem<dim>{
+        leaf_operator,
+        forces,
+        *nodal_constraints,
+        *contact_boundary,
+        law,
+        law == FrictionLaw::tresca ? 1. : the_scene.friction_coefficient()});
     seconds_of_set_up = timer.wall_time();
   }
 
@@ -94,13 +94,15 @@ namespace Friction
     // eliminating anything.
     AffineConstraints<double> prescribed =
       Compatibility::make_constraints(owned, relevant);
-    for (const auto &condition : the_scene.dirichlet_conditions())
-      VectorTools::interpolate_boundary_values(the_mapping,
-                                               dofs,
-                                               condition.boundary_id,
-                                               *condition.displacement,
-                                               prescribed,
-                                               condition.components);
+    on_all_processes(Compatibility::mpi_communicator(dofs), [&]() {
+      for (const auto &condition : the_scene.dirichlet_conditions())
+        VectorTools::interpolate_boundary_values(the_mapping,
+                                                 dofs,
+                                                 condition.boundary_id,
+                                                 *condition.displacement,
+                                                 prescribed,
+                                                 condition.components);
+    });
 
     // Single vertices may be pinned, to keep a body that is only pushed from
     // drifting away: contact can hold it from one side only, and friction does
@@ -173,7 +175,7 @@ namespace Friction
       component[i] = fe.system_to_component_index(i).first;
 
     // The integral of a load over a cell or a face.
-    const auto add_load = [&](const Function<dim>       &function,
+    const auto add_load = [&](const Function<dim>     &function,
                               const FEValuesBase<dim> &values) {
       for (const unsigned int q : values.quadrature_point_indices())
         {
@@ -184,35 +186,38 @@ namespace Friction
         }
     };
 
-    for (const auto &cell : dofs.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          cell_matrix = 0.;
-          cell_forces = 0.;
-          fe_values.reinit(cell);
-          bilinear_form(fe_values, cell_matrix);
-          if (the_scene.body_force() != nullptr)
-            add_load(*the_scene.body_force(), fe_values);
+    // A load that is no finite number somewhere is an error of all processes.
+    on_all_processes(Compatibility::mpi_communicator(dofs), [&]() {
+      for (const auto &cell : dofs.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            cell_matrix = 0.;
+            cell_forces = 0.;
+            fe_values.reinit(cell);
+            bilinear_form(fe_values, cell_matrix);
+            if (the_scene.body_force() != nullptr)
+              add_load(*the_scene.body_force(), fe_values);
 
-          // What the obstacle exerts is not among the loads. It is a reaction,
-          // and will be found in Au - f.
-          for (const unsigned int f : cell->face_indices())
-            if (cell->face(f)->at_boundary())
-              for (const auto &condition : the_scene.traction_conditions())
-                if (cell->face(f)->boundary_id() == condition.boundary_id)
-                  {
-                    face_values.reinit(cell, f);
-                    add_load(*condition.traction, face_values);
-                  }
+            // What the obstacle exerts is not among the loads. It is a
+            // reaction, and will be found in Au - f.
+            for (const unsigned int f : cell->face_indices())
+              if (cell->face(f)->at_boundary())
+                for (const auto &condition : the_scene.traction_conditions())
+                  if (cell->face(f)->boundary_id() == condition.boundary_id)
+                    {
+                      face_values.reinit(cell, f);
+                      add_load(*condition.traction, face_values);
+                    }
 
-          // Hanging nodes are condensed in the matrix and in the loads alike.
-          // If prescribed displacements were passed on as well, as in step-40,
-          // their rows would now be gone, and with them the reactions at the
-          // nodes that are held.
-          cell->get_dof_indices(indices);
-          hanging.distribute_local_to_global(
-            cell_matrix, cell_forces, indices, matrix, forces);
-        }
+            // Hanging nodes are condensed in the matrix and in the loads alike.
+            // If prescribed displacements were passed on as well, as in
+            // step-40, their rows would now be gone, and with them the
+            // reactions at the nodes that are held.
+            cell->get_dof_indices(indices);
+            hanging.distribute_local_to_global(
+              cell_matrix, cell_forces, indices, matrix, forces);
+          }
+    });
     matrix.compress(VectorOperation::add);
     forces.compress(VectorOperation::add);
 

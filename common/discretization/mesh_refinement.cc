@@ -1,6 +1,8 @@
 #include <common/compatibility.h>
 #include <common/discretization/mesh_refinement.h>
+#include <common/scene/mesh_size.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace Friction
@@ -29,6 +31,23 @@ namespace Friction
 
   template <int dim>
   void
+  refine_uniformly(parallel::distributed::Triangulation<dim> &mesh,
+                   const unsigned int                         times)
+  {
+    if (times == 0)
+      return;
+    check_that_mesh_fits(dim,
+                         mesh.n_global_active_cells() *
+                           std::pow(2., dim * times),
+                         mesh.n_global_levels() - 1 + times,
+                         Compatibility::mpi_communicator(mesh));
+    mesh.refine_global(times);
+  }
+
+
+
+  template <int dim>
+  void
   refine_mesh(parallel::distributed::Triangulation<dim> &mesh,
               Discretization<dim>                       &discretization,
               const std::vector<VectorType *>           &vectors)
@@ -39,6 +58,24 @@ namespace Friction
     for (VectorType *v : vectors)
       lifts.push_back(lift_above_rounding(*v));
     mesh.prepare_coarsening_and_refinement();
+
+    // Now it is known what the next mesh will be.
+    unsigned int n_refined = 0, deepest = 0;
+    for (const auto &cell : mesh.active_cell_iterators())
+      if (cell->is_locally_owned() && cell->refine_flag_set())
+        {
+          ++n_refined;
+          deepest = std::max<unsigned int>(deepest, cell->level() + 1);
+        }
+    const MPI_Comm communicator = Compatibility::mpi_communicator(mesh);
+    check_that_mesh_fits(
+      dim,
+      mesh.n_global_active_cells() +
+        (std::pow(2., dim) - 1.) *
+          Utilities::MPI::sum(double(n_refined), communicator),
+      Utilities::MPI::max(deepest, communicator),
+      communicator);
+
     transfer.prepare_for_coarsening_and_refinement(
       std::vector<const VectorType *>(vectors.begin(), vectors.end()));
     mesh.execute_coarsening_and_refinement();
@@ -53,6 +90,10 @@ namespace Friction
 
 
 
+  template void refine_uniformly(parallel::distributed::Triangulation<2> &,
+                                 const unsigned int);
+  template void refine_uniformly(parallel::distributed::Triangulation<3> &,
+                                 const unsigned int);
   template void refine_mesh(parallel::distributed::Triangulation<2> &,
                             Discretization<2> &,
                             const std::vector<VectorType *> &);

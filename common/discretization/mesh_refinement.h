@@ -10,9 +10,17 @@
 namespace Friction
 {
   /**
+   * Refines all cells, so many times. Throws InputError if there is not enough
+   * memory for that, see check_that_mesh_fits(). Collective.
+   */
+  template <int dim>
+  void refine_uniformly(parallel::distributed::Triangulation<dim> &mesh,
+                        const unsigned int                         times);
+
+  /**
    * Refines the cells of @p mesh that are flagged, sets up @p discretization
    * anew (without assembling), and interpolates vectors to the new mesh.
-   * Collective.
+   * Throws InputError if there is not enough memory. Collective.
    *
    * @param mesh     that of the discretisation. Cells are not coarsened.
    * @param vectors  on the leaf mesh, with ghosts that are up to date; on

@@ -1,6 +1,7 @@
 #include <common/compatibility.h>
 #include <common/discretization/volumetric_strain.h>
 #include <common/estimate/exact_error.h>
+#include <common/parallel/collective_error.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
@@ -65,40 +66,43 @@ namespace Friction
     std::vector<SymmetricTensor<2, dim>> strains(quadrature.size());
     Vector<double>                       value(dim);
 
-    double square = 0, node = 0, node_size = 0;
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          fe_values.reinit(cell);
-          fe_values[displacement].get_function_symmetric_gradients(u_h,
-                                                                   strains);
-          for (const unsigned int q : fe_values.quadrature_point_indices())
-            {
-              Tensor<2, dim> gradient;
-              for (unsigned int c = 0; c < dim; ++c)
-                gradient[c] = exact.gradient(fe_values.quadrature_point(q), c);
-              const SymmetricTensor<2, dim> e =
-                symmetrize(gradient) - strains[q];
-              const double theta = trace(gradient) -
-                volumetric_strain.value(cell, trace(strains[q]));
-              square += (material.lambda() * theta * theta +
-                         2. * material.mu() * (e * e)) *
-                fe_values.JxW(q);
-            }
-          for (const unsigned int v : cell->vertex_indices())
-            {
-              exact.vector_value(cell->vertex(v), value);
-              for (unsigned int d = 0; d < dim; ++d)
-                {
-                  node = std::max(
-                    node,
-                    std::abs(value[d] - u_h(cell->vertex_dof_index(v, d))));
-                  node_size = std::max(node_size, std::abs(value[d]));
-                }
-            }
-        }
-
+    // A value that is no finite number is an error of all processes.
     const MPI_Comm communicator = Compatibility::mpi_communicator(dof_handler);
+    double         square = 0, node = 0, node_size = 0;
+    on_all_processes(communicator, [&]() {
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            fe_values.reinit(cell);
+            fe_values[displacement].get_function_symmetric_gradients(u_h,
+                                                                     strains);
+            for (const unsigned int q : fe_values.quadrature_point_indices())
+              {
+                Tensor<2, dim> gradient;
+                for (unsigned int c = 0; c < dim; ++c)
+                  gradient[c] =
+                    exact.gradient(fe_values.quadrature_point(q), c);
+                const SymmetricTensor<2, dim> e =
+                  symmetrize(gradient) - strains[q];
+                const double theta = trace(gradient) -
+                  volumetric_strain.value(cell, trace(strains[q]));
+                square += (material.lambda() * theta * theta +
+                           2. * material.mu() * (e * e)) *
+                  fe_values.JxW(q);
+              }
+            for (const unsigned int v : cell->vertex_indices())
+              {
+                exact.vector_value(cell->vertex(v), value);
+                for (unsigned int d = 0; d < dim; ++d)
+                  {
+                    node = std::max(
+                      node,
+                      std::abs(value[d] - u_h(cell->vertex_dof_index(v, d))));
+                    node_size = std::max(node_size, std::abs(value[d]));
+                  }
+              }
+          }
+    });
     return {std::sqrt(Utilities::MPI::sum(square, communicator)),
             Utilities::MPI::max(node, communicator),
             Utilities::MPI::max(node_size, communicator)};

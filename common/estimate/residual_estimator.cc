@@ -1,6 +1,7 @@
 #include <common/compatibility.h>
 #include <common/discretization/volumetric_strain.h>
 #include <common/estimate/residual_estimator.h>
+#include <common/parallel/collective_error.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
@@ -140,19 +141,22 @@ namespace Friction
     ErrorEstimate
     Estimator<dim>::run()
     {
-      for (const auto &cell : dof_handler.active_cell_iterators())
-        if (cell->is_locally_owned())
-          {
-            add_cell(cell);
-            for (const unsigned int f : cell->face_indices())
-              if (cell->face(f)->at_boundary())
-                add_boundary_face(cell, f);
-              else
-                add_interior_face(cell, f);
-          }
-
+      // Loads are evaluated again, in other points.
       const MPI_Comm communicator =
         Compatibility::mpi_communicator(dof_handler);
+      on_all_processes(communicator, [&]() {
+        for (const auto &cell : dof_handler.active_cell_iterators())
+          if (cell->is_locally_owned())
+            {
+              add_cell(cell);
+              for (const unsigned int f : cell->face_indices())
+                if (cell->face(f)->at_boundary())
+                  add_boundary_face(cell, f);
+                else
+                  add_interior_face(cell, f);
+            }
+      });
+
       for (double *const share : {&estimate.interior,
                                   &estimate.jumps,
                                   &estimate.tractions,

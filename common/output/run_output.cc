@@ -1,6 +1,7 @@
 #include <common/compatibility.h>
 #include <common/output/profile.h>
 #include <common/output/run_output.h>
+#include <common/output/warnings.h>
 
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
@@ -61,8 +62,34 @@ namespace Friction
              parameters.output.format)
     , checkpoints(directory, communicator)
   {
+    for (const std::string &warning : parameters.warnings)
+      the_console.warning(warning);
     if (!scene.warning().empty())
       the_console.warning(scene.warning());
+  }
+
+
+
+  template <int dim>
+  void
+  RunOutput<dim>::check_start(const Discretization<dim> &discretization)
+  {
+    for (const std::string &warning :
+         warnings_at_start(discretization, parameters))
+      the_console.warning(warning);
+  }
+
+
+
+  template <int dim>
+  void
+  RunOutput<dim>::check_end(const Discretization<dim> &discretization,
+                            const VectorType          &displacement,
+                            const ContactState        &state)
+  {
+    for (const std::string &warning :
+         warnings_at_end(discretization, displacement, state))
+      the_console.warning(warning);
   }
 
 
@@ -181,8 +208,12 @@ namespace Friction
   {
     if (!nest.report().converged)
       add_failure(nest.level(), nest.report());
-    else if (!nest.is_last())
-      nothing_to_refine(nest.state());
+    else
+      {
+        if (!nest.is_last())
+          nothing_to_refine(nest.state());
+        check_end(nest.discretization(), nest.displacement(), nest.state());
+      }
   }
 
 

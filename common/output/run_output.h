@@ -45,6 +45,15 @@ namespace Friction
               const std::string &version,
               const MPI_Comm     communicator);
 
+    /** What should be known before the first solution: prints the warnings of
+     * warnings_at_start(). */
+    void check_start(const Discretization<dim> &discretization);
+
+    /** The same for the last solution, see warnings_at_end(). */
+    void check_end(const Discretization<dim> &discretization,
+                   const VectorType          &displacement,
+                   const ContactState        &state);
+
     /// For remarks and progress, by any process; only those of the first count.
     Console &console();
 
@@ -78,7 +87,8 @@ namespace Friction
     /** The same: this level could not be solved. */
     void add_failure(const unsigned int level, const SolverReport &report);
 
-    /** One of the two, if the run ends here and this is not its last level. */
+    /** One of the two, if the run ends here and this is not its last level,
+     * and the warnings that the last solution gives reason for. */
     void add_end(const NestedIteration<dim> &nest);
 
     /**

@@ -72,7 +72,7 @@ namespace Friction
        "boundary ids 0 (mantle), 1 (flat top), 2 (end z=0), 3 (end z=L). "
        "'half ball' (3D): centre at the origin, flat top z=0, boundary ids 0 "
        "(sphere) and 1 (flat top). 'mesh file': physical ids are the boundary "
-       "ids."},
+       "ids, and names of physical groups stand for them."},
       {"Scene",
        "Size",
        "",
@@ -111,8 +111,9 @@ namespace Friction
        "Mesh file",
        "",
        text,
-       "Mesh in Gmsh's .msh format, quadrilaterals or hexahedra; a relative "
-       "path starts at the folder of the scene file."},
+       "Mesh in Gmsh's .msh format, version 2.2 or 4.1, text or binary, "
+       "quadrilaterals or hexahedra; a relative path starts at the folder of "
+       "the scene file."},
       {"Scene",
        "Distortion",
        "0",
@@ -226,8 +227,10 @@ namespace Friction
       {"Contact",
        "Boundary id",
        "-1",
-       make(Patterns::Integer(-1)),
-       "The part of the boundary that may touch the obstacle; -1 for none."},
+       text,
+       "The part of the boundary that may touch the obstacle, an id or the "
+       "name "
+       "of a group of the mesh file; -1 for none."},
       {"Contact",
        "Friction law",
        "Coulomb",
@@ -247,10 +250,14 @@ namespace Friction
        "[stress]."},
       {"Contact",
        "Contact normal",
-       "body",
+       "obstacle",
        choice("body|obstacle"),
-       "Direction in which the gap is measured: the outward normal of the "
-       "body, or straight towards the obstacle."},
+       "Direction in which the gap is measured, and across which friction "
+       "acts. "
+       "'obstacle': straight towards the obstacle. 'body': the outward normal "
+       "of the body, as in the thesis; only where the two are nearly the same "
+       "do forces obey the law of friction, on a slope or at corners they do "
+       "not. Without an obstacle it is that of the body."},
 
       {"Contact",
        "Ignore prescribed penetration",

@@ -180,6 +180,37 @@ namespace Friction
         return value == "true" || value == "yes";
       }
 
+      // Whether it has been set, to something else than its default.
+      bool
+      is_changed(const std::string &path)
+      {
+        const auto entry = std::find_if(
+          parameter_entries().begin(),
+          parameter_entries().end(),
+          [&](const ParameterEntry &e) { return e.path() == path; });
+        return origin.count(path) > 0 && get(path) != entry->default_value;
+      }
+
+      // Whether some value contains a word, as expressions do.
+      bool
+      uses_word(const std::string &word)
+      {
+        const auto is_name = [](const unsigned char c) {
+          return std::isalnum(c) || c == '_';
+        };
+        for (const auto &[path, where] : origin)
+          {
+            const std::string value = get(path);
+            for (std::size_t i = value.find(word); i != value.npos;
+                 i             = value.find(word, i + 1))
+              if ((i == 0 || !is_name(value[i - 1])) &&
+                  (i + word.size() == value.size() ||
+                   !is_name(value[i + word.size()])))
+                return true;
+          }
+        return false;
+      }
+
       // "where: 'Section/Entry'", the beginning of a sentence.
       std::string
       subject(const std::string &path) const
@@ -346,7 +377,7 @@ namespace Friction
 
     std::vector<std::pair<std::string, std::string>>
     read_names(const std::string                   &path,
-               const std::map<std::string, double> &reserved,
+               const std::map<std::string, double> &taken,
                Values                              &values)
     {
       std::vector<std::pair<std::string, std::string>> names;
@@ -362,10 +393,13 @@ namespace Friction
             throw InputError(values.subject(path) + ": '" + part +
                              "' is not of the form 'name = expression'; "
                              "correct it.");
-          if (reserved.count(name) > 0)
+          if (taken.count(name) > 0)
             throw InputError(values.subject(path) + ": '" + name +
-                             "' is given by the material and the contact "
-                             "parameters; choose another name.");
+                             "' is a constant already; choose another name.");
+          for (const auto &other : names)
+            if (other.first == name)
+              throw InputError(values.subject(path) + " says twice what '" +
+                               name + "' is; remove one of them.");
           if (name == "x" || name == "y" || name == "z")
             throw InputError(values.subject(path) + ": '" + name +
                              "' is a coordinate; choose another name.");
@@ -438,6 +472,57 @@ namespace Friction
 
 
 
+    // Entries that have been set, and that nothing uses in this scene: most
+    // likely another entry is not what it should be.
+    std::vector<std::string>
+    unused_entries(Values &values)
+    {
+      std::vector<std::string> warnings;
+      const auto               is_one_of = [&](const std::string              &path,
+                                 const std::vector<std::string> &choices) {
+        return std::find(choices.begin(), choices.end(), values.get(path)) !=
+          choices.end();
+      };
+      const auto only_with = [&](const std::string              &path,
+                                 const std::string              &other,
+                                 const std::vector<std::string> &choices) {
+        if (!values.is_changed(path) || is_one_of(other, choices))
+          return;
+        std::string wanted;
+        for (const std::string &choice : choices)
+          wanted += (wanted.empty() ? "'" : " or '") + choice + "'";
+        warnings.push_back("Warning: " + values.subject(path) +
+                           " is not used, since '" + other + "' is '" +
+                           values.get(other) + "' and not " + wanted + ".");
+      };
+
+      const std::string geometry = "Scene/Geometry";
+      for (const std::string name : {"Size", "Subdivisions", "Distortion"})
+        only_with("Scene/" + name, geometry, {"rectangle"});
+      only_with("Scene/Radius",
+                geometry,
+                {"half disc", "cylinder", "half cylinder", "half ball"});
+      for (const std::string name : {"Length", "Layers"})
+        only_with("Scene/" + name, geometry, {"cylinder", "half cylinder"});
+      only_with("Scene/Coarse grid", geometry, {"cylinder"});
+      for (const std::string name : {"Point", "Normal"})
+        only_with("Obstacle/" + name, "Obstacle/Kind", {"plane"});
+      for (const std::string name : {"Centers", "Axes", "Radius", "Length"})
+        only_with("Obstacle/" + name, "Obstacle/Kind", {"rods"});
+      only_with("Contact/Contact normal", "Obstacle/Kind", {"plane", "rods"});
+      only_with("Contact/Friction bound", "Contact/Friction law", {"Tresca"});
+      // Expressions may use it as F.
+      if (!values.uses_word("F"))
+        only_with(
+          "Contact/Friction coefficient", "Contact/Friction law", {"Coulomb"});
+      for (const std::string name : {"Marking", "Contact zone"})
+        only_with("Refinement/" + name, "Refinement/Strategy", {"adaptive"});
+      only_with("Output/Format", "Output/Fields", {"true", "yes"});
+      return warnings;
+    }
+
+
+
     // The less a material can be compressed, the worse sweeps and coarse
     // corrections reduce displacements that hardly change volumes. Sweeps that
     // follow each other through the cache are the cheapest remedy; see
@@ -455,11 +540,17 @@ namespace Friction
 
   Expressions::Expressions(
     const std::map<std::string, double>                    &constants,
-    const std::vector<std::pair<std::string, std::string>> &definitions)
+    const std::vector<std::pair<std::string, std::string>> &definitions,
+    const std::string                                      &where)
     : named_numbers(constants)
   {
+    // In two dimensions there is no z, which is found out by those who use the
+    // definition.
     for (const auto &[name, expression] : definitions)
-      expanded_definitions[name] = expand(expression);
+      {
+        parse_function<3>({expression}, *this, where + " of '" + name + "'");
+        expanded_definitions[name] = expand(expression);
+      }
   }
 
 
@@ -558,14 +649,15 @@ namespace Friction
       {"mu", parameters.material.mu()},
       {"F", F},
       {"pi", numbers::PI}};
-    const std::map<std::string, double> reserved = constants;
     for (const auto &[name, expression] :
-         read_names("Scene/Constants", reserved, values))
+         read_names("Scene/Constants", constants, values))
       constants[name] =
         Expressions(constants, {})
           .evaluate(expression, values.subject("Scene/Constants"));
     parameters.expressions =
-      Expressions(constants, read_names("Scene/Definitions", reserved, values));
+      Expressions(constants,
+                  read_names("Scene/Definitions", constants, values),
+                  values.subject("Scene/Definitions"));
 
     const auto vector_of = [&](const std::string &path) {
       return read_vector(
@@ -619,6 +711,11 @@ namespace Friction
           if (scene.mesh_file[0] != '/')
             scene.mesh_file = folder + scene.mesh_file;
         }
+      else if (!scene.mesh_file.empty())
+        throw InputError(values.subject("Scene/Mesh file") + " is '" +
+                         scene.mesh_file + "', but 'Scene/Geometry' is '" +
+                         geometry +
+                         "'; set that to 'mesh file', or remove the file.");
       scene.distortion         = values.number("Scene/Distortion");
       scene.rotation_angle     = values.number("Scene/Rotation angle");
       scene.exact_displacement = values.get("Scene/Exact displacement");
@@ -676,8 +773,9 @@ namespace Friction
     {
       const std::string law     = values.get("Contact/Friction law");
       auto             &contact = parameters.contact;
-      contact.boundary_id =
-        Utilities::string_to_int(values.get("Contact/Boundary id"));
+      contact.boundary          = values.get("Contact/Boundary id");
+      if (contact.boundary == "-1")
+        contact.boundary.clear();
       contact.friction_law         = (law == "none"       ? FrictionLaw::none
                                         : law == "Tresca" ? FrictionLaw::tresca
                                                           : FrictionLaw::coulomb);
@@ -688,11 +786,6 @@ namespace Friction
       contact.normal = (values.get("Contact/Contact normal") == "body"
                           ? ContactNormal::body
                           : ContactNormal::obstacle);
-      if (contact.normal == ContactNormal::obstacle &&
-          parameters.obstacle.kind == ObstacleKind::none)
-        throw InputError(values.subject("Contact/Contact normal") +
-                         " is 'obstacle', but there is none; set "
-                         "'Obstacle/Kind', or take 'body'.");
     }
 
     {
@@ -745,9 +838,9 @@ namespace Friction
       solver.maximum_cycles = values.integer("Solver/Maximum cycles");
       solver.maximum_outer_iterations =
         values.integer("Solver/Maximum outer iterations");
-      solver.maximum_step_length  = values.number("Solver/Maximum step length");
-      solver.recombined_steps = values.integer("Solver/Recombined steps");
-      solver.outer_damping    = values.number("Solver/Outer damping");
+      solver.maximum_step_length = values.number("Solver/Maximum step length");
+      solver.recombined_steps    = values.integer("Solver/Recombined steps");
+      solver.outer_damping       = values.number("Solver/Outer damping");
       solver.mixed_outer_iterations =
         values.integer("Solver/Mixed outer iterations");
       solver.safeguards = values.flag("Solver/Safeguards");
@@ -772,6 +865,7 @@ namespace Friction
                          " is empty; name a directory.");
     }
 
+    parameters.warnings = unused_entries(values);
     return parameters;
   }
 

@@ -28,10 +28,13 @@ namespace Friction
      * @param constants names and their numbers
      * @param definitions names and the expressions they stand for, which may
      *   use the constants and the definitions before them
+     * @param where the beginning of the sentence if one of them cannot be
+     *   understood, which is an InputError
      */
     Expressions(
       const std::map<std::string, double>                    &constants,
-      const std::vector<std::pair<std::string, std::string>> &definitions);
+      const std::vector<std::pair<std::string, std::string>> &definitions,
+      const std::string                                      &where = "");
 
     /// The expression with every defined name replaced by what it stands for.
     std::string expand(const std::string &expression) const;
@@ -86,7 +89,7 @@ namespace Friction
   enum class ContactNormal
   {
     body,    ///< the outward normal of the body at the node
-    obstacle ///< from the node straight towards the obstacle
+    obstacle ///< from the node straight towards the obstacle, if there is one
   };
 
   enum class RefinementStrategy
@@ -154,11 +157,11 @@ namespace Friction
 
     struct Contact
     {
-      int           boundary_id          = -1; ///< -1: no contact boundary
+      std::string   boundary; ///< id or name; empty: no contact boundary
       FrictionLaw   friction_law         = FrictionLaw::coulomb;
       double        friction_coefficient = 0.;
       std::string   friction_bound; ///< Tresca: given stress, an expression
-      ContactNormal normal                        = ContactNormal::body;
+      ContactNormal normal                        = ContactNormal::obstacle;
       bool          ignore_prescribed_penetration = false;
     };
 
@@ -191,6 +194,10 @@ namespace Friction
       bool        profile    = false; ///< print what the solver has cost
       Verbosity   verbosity  = Verbosity::cycles;
     };
+
+    /// What is strange about the scene but no error: entries that it does not
+    /// use. Each a sentence.
+    std::vector<std::string> warnings;
 
     std::string name; ///< stem of the scene file's name
     std::string text; ///< all parameters in effect, in the file format

@@ -17,6 +17,36 @@
 namespace Friction
 {
   /**
+   * Throws InputError if an expression has several values, separated by commas,
+   * of which muParser would take the last one, or an assignment, which it would
+   * carry out.
+   */
+  inline void
+  check_is_one_value(const std::string &expression, const std::string &where)
+  {
+    int depth = 0;
+    for (std::size_t i = 0; i < expression.size(); ++i)
+      {
+        const char c = expression[i];
+        depth += (c == '(') - (c == ')');
+        if (c == ',' && depth == 0)
+          throw InputError(where + ": '" + expression +
+                           "' has several values where there should be one; "
+                           "correct it.");
+        if (c != '=')
+          continue;
+        const bool first_of_two =
+          i + 1 < expression.size() && expression[i + 1] == '=';
+        const bool second_of_two = i > 0 &&
+          std::string("=<>!").find(expression[i - 1]) != std::string::npos;
+        if (!first_of_two && !second_of_two)
+          throw InputError(where + ": '" + expression +
+                           "' has a '=' in it, but nothing can be assigned "
+                           "here; comparisons are written '=='.");
+      }
+  }
+
+  /**
    * A function of the coordinates from one expression per component, which may
    * use the given names. Throws InputError if one of them cannot be
    * understood, with @p where as the beginning of the sentence.
@@ -31,7 +61,10 @@ namespace Friction
   {
     std::vector<std::string> expanded;
     for (const std::string &component : components)
-      expanded.push_back(expressions.expand(component));
+      {
+        check_is_one_value(component, where);
+        expanded.push_back(expressions.expand(component));
+      }
 
     // The parser describes errors on the console before it throws. That is
     // about the expanded expressions, which the user has never seen, so we keep

@@ -1,4 +1,5 @@
 #include <common/parallel/collective_error.h>
+#include <common/program/check_scene.h>
 #include <common/program/command_line.h>
 #include <common/program/version.h>
 
@@ -10,6 +11,7 @@
 
 #include <exception>
 #include <iostream>
+#include <new>
 #include <vector>
 
 namespace Friction
@@ -22,6 +24,9 @@ namespace Friction
       const std::string &name = program.name;
       return "Usage: " + name +
         " SCENE.prm [--restart] [Section/Entry=value ...]\n"
+        "       " +
+        name +
+        " SCENE.prm --check [Section/Entry=value ...]\n"
         "       " +
         name +
         " --parameters   print all entries with defaults\n"
@@ -53,7 +58,11 @@ namespace Friction
         "checkpoint\n"
         "there, from which --restart continues a run that was interrupted, or "
         "is to get\n"
-        "more levels. Exit status: 0 solved, 1 not converged, 2 bad input, 3 "
+        "more levels. --check makes the first mesh and says what is strange "
+        "about "
+        "the\n"
+        "scene, without solving or writing anything. Exit status: 0 solved, 1 "
+        "not converged, 2 bad input, 3 "
         "an error of\n"
         "the program.\n";
     }
@@ -122,6 +131,12 @@ namespace Friction
         const Start start =
           restart == arguments.end() ? Start::anew : Start::from_checkpoint;
         arguments.erase(restart, arguments.end());
+        const auto check =
+          std::remove(arguments.begin(), arguments.end(), "--check");
+        const bool only_check = check != arguments.end();
+        arguments.erase(check, arguments.end());
+        if (arguments.empty() && only_check)
+          throw InputError("--check needs a scene file.");
         if (arguments.empty())
           throw InputError("--restart needs the scene file of the run that is "
                            "to be continued.");
@@ -131,6 +146,14 @@ namespace Friction
           return read_parameters(arguments[0],
                                  {arguments.begin() + 1, arguments.end()});
         });
+        if (only_check)
+          {
+            if (program.dimensions == "two")
+              check_scene<2>(parameters, std::cout, MPI_COMM_WORLD);
+            else
+              check_scene<3>(parameters, std::cout, MPI_COMM_WORLD);
+            return 0;
+          }
         return run(parameters, start) ? 0 : 1;
       }
     catch (const InputError &error)
@@ -138,6 +161,11 @@ namespace Friction
         if (speaks)
           std::cerr << program.name << ": " << error.what() << std::endl;
         return 2;
+      }
+    catch (const std::bad_alloc &)
+      {
+        return unexpected("there is not enough memory; a coarser mesh, or "
+                          "several machines, would need less on each");
       }
     catch (const std::exception &error)
       {

@@ -25,8 +25,9 @@ namespace Friction
 
   /**
    * What every step program does around its work: starts MPI, answers `--help`
-   * and `--parameters`, reads the scene file with `--restart` and the overrides
-   * that follow it, and turns errors into one sentence without a stack trace.
+   * and `--parameters`, reads the scene file with `--restart` or `--check` and
+   * the overrides that follow it, and turns errors into one sentence without a
+   * stack trace.
    *
    * The return value is the exit status, which is part of the result:
    * - 0: all levels have been solved and certified;

@@ -4,14 +4,12 @@
 #include <deal.II/base/utilities.h>
 
 #include <deal.II/grid/grid_generator.h>
-#include <deal.II/grid/grid_in.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/manifold_lib.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <random>
@@ -542,41 +540,6 @@ namespace Friction
       if (scene.distortion > 0.)
         distort(scene.distortion, cell_size, triangulation);
     }
-
-
-
-    template <int dim>
-    void
-    read_mesh_file(const Parameters::Scene &scene,
-                   const std::string       &where,
-                   Triangulation<dim>      &triangulation)
-    {
-      std::ifstream file(scene.mesh_file);
-      if (!file)
-        throw InputError(where + "cannot open the mesh file '" +
-                         scene.mesh_file + "'; correct 'Scene/Mesh file'.");
-      // A mesh of triangles may be read without complaint.
-      bool is_good = true;
-      try
-        {
-          GridIn<dim> reader;
-          reader.attach_triangulation(triangulation);
-          reader.read_msh(file);
-          is_good = triangulation.all_reference_cells_are_hyper_cube();
-        }
-      catch (const std::exception &)
-        {
-          is_good = false;
-        }
-      if (!is_good)
-        throw InputError(
-          where + "the mesh file '" + scene.mesh_file + "' is not a " +
-          Utilities::int_to_string(dim) + "D mesh of " +
-          (dim == 2 ? "quadrilaterals" : "hexahedra") +
-          " in Gmsh's .msh format; export it as such, with a physical " +
-          (dim == 2 ? "surface" : "volume") +
-          " if anything in it is physical.");
-    }
   } // namespace
 
 
@@ -599,7 +562,7 @@ namespace Friction
           make_rectangle(scene, where, triangulation);
           break;
         case GeometryKind::mesh_file:
-          read_mesh_file(scene, where, triangulation);
+          Assert(false, ExcMessage("A mesh file has a class of its own."));
           break;
       }
   }

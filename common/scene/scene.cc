@@ -1,8 +1,11 @@
 #include <common/compatibility.h>
 #include <common/parallel/collective_error.h>
-#include <common/scene/geometries.h>
 #include <common/parameters/parse_function.h>
+#include <common/scene/geometries.h>
+#include <common/scene/mesh_size.h>
+#include <common/scene/rigid_motions.h>
 #include <common/scene/scene.h>
+#include <common/scene/scene_functions.h>
 
 #include <deal.II/base/geometry_info.h>
 #include <deal.II/base/numbers.h>
@@ -13,71 +16,13 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <set>
 #include <sstream>
 
 namespace Friction
 {
   namespace
   {
-    // A function given for the scene as written, seen from the turned scene:
-    // its argument is turned back, and its value, if a vector, is turned.
-    template <int dim>
-    class TurnedFunction : public Function<dim>
-    {
-    public:
-      TurnedFunction(const std::shared_ptr<const Function<dim>> &function,
-                     const Tensor<2, dim>                       &rotation)
-        : Function<dim>(function->n_components)
-        , function(function)
-        , rotation(rotation)
-      {}
-
-      void
-      vector_value(const Point<dim> &p, Vector<double> &values) const override
-      {
-        const Point<dim> original(transpose(rotation) * p);
-        if (this->n_components == 1)
-          {
-            values[0] = function->value(original);
-            return;
-          }
-        Tensor<1, dim> value;
-        for (unsigned int c = 0; c < dim; ++c)
-          value[c] = function->value(original, c);
-        value = rotation * value;
-        for (unsigned int c = 0; c < dim; ++c)
-          values[c] = value[c];
-      }
-
-      double
-      value(const Point<dim>  &p,
-            const unsigned int component = 0) const override
-      {
-        Vector<double> values(this->n_components);
-        vector_value(p, values);
-        return values[component];
-      }
-
-      Tensor<1, dim>
-      gradient(const Point<dim>  &p,
-               const unsigned int component = 0) const override
-      {
-        const Point<dim> original(transpose(rotation) * p);
-        if (this->n_components == 1)
-          return rotation * function->gradient(original);
-        Tensor<2, dim> gradient;
-        for (unsigned int c = 0; c < dim; ++c)
-          gradient[c] = function->gradient(original, c);
-        return (rotation * gradient * transpose(rotation))[component];
-      }
-
-    private:
-      std::shared_ptr<const Function<dim>> function;
-      Tensor<2, dim>                       rotation;
-    };
-
-
-
     std::vector<std::string>
     split_components(const std::string &text)
     {
@@ -108,20 +53,26 @@ namespace Friction
         p[d] = coordinates[d];
       return p;
     }
-
-
-
-    types::boundary_id
-    read_boundary_id(const std::string &text, const std::string &where)
-    {
-      const bool is_number =
-        !text.empty() && std::all_of(text.begin(), text.end(), ::isdigit);
-      if (!is_number || text.size() > 9)
-        throw InputError(where + ": '" + text +
-                         "' is no boundary id; give a number from 0 on.");
-      return std::stoi(text);
-    }
   } // namespace
+
+
+
+  // A number, or the name of a group of the mesh file.
+  template <int dim>
+  types::boundary_id
+  Scene<dim>::read_boundary_id(const std::string &text,
+                               const std::string &where) const
+  {
+    const bool is_number =
+      !text.empty() && std::all_of(text.begin(), text.end(), ::isdigit);
+    if (is_number && text.size() <= 9)
+      return std::stoi(text);
+    if (mesh_file != nullptr && !is_number)
+      return mesh_file->boundary_id(text, where);
+    throw InputError(
+      where + ": '" + text + "' is no boundary id; give a number from 0 on" +
+      (is_number ? "." : ", or the name of a group of a mesh file."));
+  }
 
 
 
@@ -130,11 +81,16 @@ namespace Friction
   Scene<dim>::make_function(const std::vector<std::string> &components,
                             const std::string              &where) const
   {
-    const std::shared_ptr<const Function<dim>> function =
-      parse_function<dim>(components, parameters.expressions, where);
-    if (parameters.scene.rotation_angle == 0.)
-      return function;
-    return std::make_shared<TurnedFunction<dim>>(function, rotation);
+    std::string text;
+    for (const std::string &component : components)
+      text += (text.empty() ? "" : ", ") + Utilities::trim(component);
+    const std::shared_ptr<const Function<dim>> function = checked_function<dim>(
+      parse_function<dim>(components, parameters.expressions, where),
+      where,
+      text);
+    return parameters.scene.rotation_angle == 0.
+      ? function
+      : turned_function<dim>(function, rotation);
   }
 
 
@@ -199,7 +155,24 @@ namespace Friction
         }
     }
 
-    std::vector<bool> is_held(dim, false);
+    if (parameters.scene.geometry == GeometryKind::mesh_file)
+      mesh_file =
+        std::make_shared<const MeshFile<dim>>(parameters.scene.mesh_file, here);
+    if (!parameters.contact.boundary.empty())
+      contact_id = read_boundary_id(parameters.contact.boundary,
+                                    here + "'Contact/Boundary id'");
+
+    // What is prescribed twice could be meant in two ways.
+    const auto check_once = [](const auto        &conditions,
+                               const std::string &where) {
+      for (unsigned int i = 0; i < conditions.size(); ++i)
+        for (unsigned int j = 0; j < i; ++j)
+          if (conditions[i].boundary_id == conditions[j].boundary_id)
+            throw InputError(where + " names boundary id " +
+                             std::to_string(conditions[i].boundary_id) +
+                             " twice; say all about it in one condition.");
+    };
+
     for (const ConditionText &text :
          parameters.boundary_conditions.displacement)
       {
@@ -213,8 +186,6 @@ namespace Friction
               mask[d]       = false;
               components[d] = "0";
             }
-          else
-            is_held[d] = true;
         if (angle != 0. &&
             std::find(mask.begin(), mask.end(), false) != mask.end())
           throw InputError(where +
@@ -252,7 +223,6 @@ namespace Friction
             {
               value[d] =
                 parameters.expressions.evaluate(text.components[d], where);
-              is_held[d] = true;
             }
         if (angle != 0. && n_free > 0)
           throw InputError(where +
@@ -264,21 +234,14 @@ namespace Friction
           if (text.components[d] != "free")
             pinned.push_back({point, d, value[d]});
       }
-
-    // Contact holds a body only where it is pressed, and where that is is not known in
-    // advance, so the displacement conditions have to do it alone. A part of
-    // the boundary and every component: that leaves out only oddities.
-    if (dirichlet.empty())
-      throw InputError(here +
-                       "the displacement is prescribed nowhere on the "
-                       "boundary, so the body can move as a rigid one; set "
-                       "'Boundary conditions/Displacement'.");
-    for (unsigned int d = 0; d < dim; ++d)
-      if (!is_held[d])
-        throw InputError(
-          here + "nothing holds the body in " + std::string(1, "xyz"[d]) +
-          " direction; prescribe that component in 'Boundary "
-          "conditions/Displacement' or 'Boundary conditions/Pinned points'.");
+    check_once(dirichlet, here + "'Boundary conditions/Displacement'");
+    for (unsigned int i = 0; i < pinned.size(); ++i)
+      for (unsigned int j = 0; j < i; ++j)
+        if (pinned[i].point == pinned[j].point &&
+            pinned[i].component == pinned[j].component)
+          throw InputError(here +
+                           "'Boundary conditions/Pinned points' pins the same "
+                           "component of the same point twice; remove one.");
 
     for (const ConditionText &text : parameters.boundary_conditions.traction)
       {
@@ -287,6 +250,7 @@ namespace Friction
         tractions.push_back({read_boundary_id(text.key, where),
                              make_function(text.components, where)});
       }
+    check_once(tractions, here + "'Boundary conditions/Traction'");
 
     if (!parameters.boundary_conditions.body_force.empty())
       {
@@ -323,6 +287,14 @@ namespace Friction
     // all.
     // The copy at the end takes over this mesh's policy of refinement as well,
     // which therefore has to be the one that the given triangulation has.
+    if (parameters.scene.geometry == GeometryKind::rectangle)
+      {
+        double n_cells = 1.;
+        for (const unsigned int n : parameters.scene.subdivisions)
+          n_cells *= n;
+        check_that_mesh_fits(
+          dim, n_cells, 0, Compatibility::mpi_communicator(triangulation));
+      }
     Triangulation<dim> mesh(triangulation.get_mesh_smoothing());
     on_all_processes(Compatibility::mpi_communicator(triangulation),
                      [&]() { make_serial_mesh(mesh); });
@@ -338,7 +310,17 @@ namespace Friction
   Scene<dim>::make_serial_mesh(Triangulation<dim> &mesh) const
   {
     const std::string here = "scene '" + parameters.name + "': ";
-    make_geometry(parameters.scene, here, mesh);
+    if (mesh_file != nullptr)
+      {
+        std::set<types::boundary_id> used = {contact_boundary_id()};
+        for (const auto &condition : dirichlet)
+          used.insert(condition.boundary_id);
+        for (const auto &condition : tractions)
+          used.insert(condition.boundary_id);
+        mesh_file->make(used, mesh);
+      }
+    else
+      make_geometry(parameters.scene, here, mesh);
 
     if (parameters.scene.rotation_angle != 0.)
       GridTools::transform(
@@ -354,9 +336,14 @@ namespace Friction
       for (const types::boundary_id known_id : ids)
         known +=
           (known.empty() ? "" : ", ") + Utilities::int_to_string(known_id);
-      throw InputError(here + "'" + entry + "' names boundary id " +
-                       Utilities::int_to_string(id) +
-                       ", but the mesh has only " + known + "; correct it.");
+      throw InputError(
+        here + "'" + entry + "' names boundary id " +
+        Utilities::int_to_string(id) +
+        (mesh_file != nullptr && mesh_file->lies_inside(id)
+                                 ? ", whose faces lie inside the body; its boundary has "
+                                   "only "
+                                 : ", but the mesh has only ") +
+        known + "; correct it.");
     };
     for (const auto &condition : dirichlet)
       check_id(condition.boundary_id, "Boundary conditions/Displacement");
@@ -375,6 +362,42 @@ namespace Friction
                            "'Boundary conditions/Pinned points' names a point "
                            "that is no vertex of the coarse mesh; correct it.");
       }
+    check_pinned_points(mesh, here);
+    check_that_body_is_held(*this, mesh, here);
+  }
+
+
+
+  // A vertex may be pinned on a boundary with prescribed displacements, but not
+  // somewhere else.
+  template <int dim>
+  void
+  Scene<dim>::check_pinned_points(const Triangulation<dim> &mesh,
+                                  const std::string        &here) const
+  {
+    for (const auto &pin : pinned)
+      for (const auto &cell : mesh.active_cell_iterators())
+        for (const auto &face : cell->face_iterators())
+          for (const auto &condition : dirichlet)
+            if (face->at_boundary() &&
+                face->boundary_id() == condition.boundary_id &&
+                condition.components[pin.component])
+              for (const unsigned int v : face->vertex_indices())
+                if (face->vertex(v).distance(pin.point) <
+                    1e-8 * face->diameter())
+                  {
+                    const double value =
+                      condition.displacement->value(pin.point, pin.component);
+                    if (std::abs(value - pin.value) >
+                        1e-8 * (std::abs(value) + std::abs(pin.value)))
+                      throw InputError(
+                        here +
+                        "'Boundary conditions/Pinned points' and 'Boundary "
+                        "conditions/Displacement' contradict each other in a "
+                        "vertex of boundary id " +
+                        std::to_string(condition.boundary_id) +
+                        "; remove one of them.");
+                  }
   }
 
 
@@ -383,9 +406,7 @@ namespace Friction
   types::boundary_id
   Scene<dim>::contact_boundary_id() const
   {
-    return parameters.contact.boundary_id < 0
-      ? numbers::invalid_boundary_id
-      : static_cast<types::boundary_id>(parameters.contact.boundary_id);
+    return contact_id;
   }
 
 
@@ -421,7 +442,7 @@ namespace Friction
     // One without the other is most likely forgotten. Given friction needs no
     // obstacle.
     const bool has_obstacle = parameters.obstacle.kind != ObstacleKind::none;
-    const bool has_boundary = parameters.contact.boundary_id >= 0;
+    const bool has_boundary = contact_id != numbers::invalid_boundary_id;
     if (has_obstacle && !has_boundary)
       return "Warning: no part of the boundary may touch the obstacle, so "
              "there "

@@ -2,8 +2,9 @@
 #define friction_scene_scene_h
 
 #include <common/parameters/material.h>
-#include <common/scene/obstacle.h>
 #include <common/parameters/parameters.h>
+#include <common/scene/mesh_file.h>
+#include <common/scene/obstacle.h>
 
 #include <deal.II/base/function.h>
 #include <deal.II/base/types.h>
@@ -82,16 +83,17 @@ namespace Friction
   {
   public:
     /**
-     * Throws InputError if the parameters do not describe a scene in dim
-     * dimensions, or one whose body can move as a rigid one.
+     * Reads the mesh file, if there is one. Throws InputError if that cannot be
+     * read, or if the parameters do not describe a scene in dim dimensions.
      */
     explicit Scene(const Parameters &parameters);
 
     /**
      * Fill a given empty triangulation, which may be a distributed one, with
      * the coarse mesh and set its boundary ids and manifolds. Throws
-     * InputError if the mesh cannot be read or lacks a boundary id or a pinned
-     * point that the scene mentions.
+     * InputError if the mesh lacks a boundary id or a pinned point that the
+     * scene mentions, or if a part of the body can move as a rigid one, see
+     * check_that_body_is_held().
      */
     void make_coarse_mesh(Triangulation<dim> &triangulation) const;
 
@@ -186,9 +188,17 @@ namespace Friction
     /// The coarse mesh on one process, checked.
     void make_serial_mesh(Triangulation<dim> &mesh) const;
 
+    void check_pinned_points(const Triangulation<dim> &mesh,
+                             const std::string        &here) const;
+
+    types::boundary_id read_boundary_id(const std::string &text,
+                                        const std::string &where) const;
+
     Parameters                           parameters;
-    Tensor<2, dim>                       rotation;
-    Obstacle<dim>                        the_obstacle;
+    std::shared_ptr<const MeshFile<dim>> mesh_file; ///< or null
+    types::boundary_id contact_id = numbers::invalid_boundary_id;
+    Tensor<2, dim>     rotation;
+    Obstacle<dim>      the_obstacle;
     std::vector<DirichletCondition<dim>> dirichlet;
     std::vector<TractionCondition<dim>>  tractions;
     std::vector<PinnedPoint<dim>>        pinned;

@@ -33,7 +33,7 @@ namespace
     p.obstacle.kind        = ObstacleKind::plane;
     p.obstacle.point       = {0., -1.};
     p.obstacle.normal      = {0., -1.};
-    p.contact.boundary_id  = 0;
+    p.contact.boundary     = "0";
     p.contact.friction_law = FrictionLaw::none;
     p.boundary_conditions.displacement.push_back({"1", {"0", "-0.0062"}});
     return p;
@@ -168,11 +168,14 @@ namespace
     const auto &disc        = problem.discretization;
     const auto &constraints = problem.constraints();
 
-    VectorType integrals(disc.dof_handler().locally_owned_dofs(), MPI_COMM_WORLD);
+    VectorType            integrals(disc.dof_handler().locally_owned_dofs(),
+                         MPI_COMM_WORLD);
     const QGauss<dim - 1> quadrature(3);
-    FEFaceValues<dim>     face_values(
-      disc.mapping(), disc.dof_handler().get_fe(), quadrature, update_values | update_JxW_values);
-    Vector<double>                       local(disc.dof_handler().get_fe().n_dofs_per_cell());
+    FEFaceValues<dim>     face_values(disc.mapping(),
+                                  disc.dof_handler().get_fe(),
+                                  quadrature,
+                                  update_values | update_JxW_values);
+    Vector<double>        local(disc.dof_handler().get_fe().n_dofs_per_cell());
     std::vector<types::global_dof_index> indices(local.size());
     std::vector<char> hangs_at_contact(constraints.n_nodes(), 0);
     for (const auto &cell : disc.dof_handler().active_cell_iterators())
@@ -186,7 +189,8 @@ namespace
               for (unsigned int i = 0; i < local.size(); ++i)
                 local(i) += face_values.shape_value(i, q) * face_values.JxW(q);
             cell->get_dof_indices(indices);
-            disc.hanging_nodes().distribute_local_to_global(local, indices, integrals);
+            disc.hanging_nodes().distribute_local_to_global(
+              local, indices, integrals);
             for (unsigned int v = 0; v < cell->face(f)->n_vertices(); ++v)
               {
                 const unsigned int node = constraints.node_of_dof(

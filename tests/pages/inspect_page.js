@@ -121,13 +121,15 @@ function inspectNextFrame() {
   requestAnimationFrame(() => requestAnimationFrame(inspect));
 }
 
-// MathJax comes after the page, and is through when its queue is empty.
+// MathJax comes after the page. The last signal of its start is that all formulas
+// are set; asked for later, it is given at once.
 const waiting = document.querySelector('script[src*="MathJax.js"]');
 (function wait(turns) {
   if (!waiting)
     inspectNextFrame();
-  else if (window.MathJax && MathJax.isReady)
-    MathJax.Hub.Queue(inspectNextFrame);
+  else if (window.MathJax && MathJax.Hub && MathJax.Hub.Register)
+    MathJax.Hub.Register.StartupHook(
+      "End", () => MathJax.Hub.Queue(inspectNextFrame));
   else if (turns === 0)
     done(["MathJax has not been loaded"]);
   else

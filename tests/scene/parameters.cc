@@ -178,7 +178,6 @@ main()
   check("constant", good, {"Scene/Constants=F=1"});
   check("no rods", good, {"Obstacle/Kind=rods"});
   check("no normal", good, {"Obstacle/Normal=0, 0"});
-  check("no obstacle", good, {"Contact/Contact normal=obstacle"});
   check("conditions", good, {"Boundary conditions/Displacement=0, 0"});
   check("directory", good, {"Output/Directory="});
 }

@@ -46,7 +46,8 @@ namespace Tests
     p.boundary_conditions.displacement.push_back(
       {dim == 2 ? "3" : "5", displacement});
 
-    p.contact.boundary_id          = (dim == 2 ? 2 : 4);
+    p.contact.boundary             = (dim == 2 ? "2" : "4");
+    p.contact.normal               = ContactNormal::body;
     p.contact.friction_law         = law;
     p.contact.friction_coefficient = friction_coefficient;
     return p;
@@ -67,12 +68,12 @@ namespace Tests
     auto      &displacement = p.boundary_conditions.displacement;
     if (dim == 2)
       {
-        p.scene.geometry      = GeometryKind::half_disc;
-        p.scene.radius        = 1.;
-        p.scene.distortion    = 0.;
-        p.obstacle.point      = {0., -1.};
-        p.contact.boundary_id = 0;
-        displacement          = {{"1", {"0.05", "-0.2"}}};
+        p.scene.geometry   = GeometryKind::half_disc;
+        p.scene.radius     = 1.;
+        p.scene.distortion = 0.;
+        p.obstacle.point   = {0., -1.};
+        p.contact.boundary = "0";
+        displacement       = {{"1", {"0.05", "-0.2"}}};
       }
     else
       {
@@ -137,7 +138,8 @@ namespace Tests
     for (unsigned int p = 0; p < contact.size(); ++p)
       number[contact[p].node] = p;
     std::vector<char> counts(constraints.n_nodes(), 0);
-    for (const auto &cell : discretization.dof_handler().active_cell_iterators())
+    for (const auto &cell :
+         discretization.dof_handler().active_cell_iterators())
       for (const unsigned int f : cell->face_indices())
         if (cell->at_boundary(f) && cell->face(f)->boundary_id() == boundary_id)
           for (unsigned int v = 0; v < cell->face(f)->n_vertices(); ++v)
@@ -146,7 +148,8 @@ namespace Tests
               const unsigned int node = constraints.node_of_dof(dof);
               if (constraints.is_hanging(node))
                 for (const auto &master :
-                     *discretization.hanging_nodes().get_constraint_entries(dof))
+                     *discretization.hanging_nodes().get_constraint_entries(
+                       dof))
                   {
                     const unsigned int p =
                       number[constraints.node_of_dof(master.first)];
@@ -278,10 +281,8 @@ namespace Tests
     {
       discretization.set_up();
       discretization.assemble(elasticity<dim>(scene.material()));
-      level_hierarchy =
-        std::make_unique<LevelHierarchy<dim>>(discretization.dof_handler(),
-                                              constraints(),
-                                              matrix());
+      level_hierarchy = std::make_unique<LevelHierarchy<dim>>(
+        discretization.dof_handler(), constraints(), matrix());
     }
   };
 

@@ -1,0 +1,360 @@
+#include <common/output/warnings.h>
+#include <common/parallel/reductions.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/numbers.h>
+
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <deal.II/base/quadrature_lib.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <sstream>
+
+namespace Friction
+{
+  namespace
+  {
+    // Edges of a boundary that is meant to be smooth are flatter than the
+    // first, and do not matter if they are flatter than the second; degrees.
+    constexpr double smallest_corner = 40., smallest_edge = 3.;
+
+    // From here on a tangential force that belongs to one normal is a normal
+    // force for the other: five degrees change the ratio of the two by 0.09.
+    constexpr double large_angle = 5.; // degrees
+
+    // Relative to the largest displacement at the contact boundary, and to the
+    // body.
+    constexpr double large_distance     = .1;
+    constexpr double large_displacement = .1;
+
+
+
+    template <int dim>
+    std::string
+    describe(const Point<dim> &p)
+    {
+      std::ostringstream text;
+      text.precision(4);
+      for (unsigned int d = 0; d < dim; ++d)
+        text << (d == 0 ? "(" : ", ") << p[d];
+      text << ')';
+      return text.str();
+    }
+
+
+
+    std::string
+    number(const double x)
+    {
+      std::ostringstream text;
+      text.precision(3);
+      text << x;
+      return text.str();
+    }
+
+
+
+    double
+    degrees(const double cosine)
+    {
+      return std::acos(std::max(-1., std::min(1., cosine))) * 180. /
+        numbers::PI;
+    }
+
+
+
+    // The largest value of all processes, and its place.
+    template <int dim>
+    std::pair<double, Point<dim>>
+    largest(const MPI_Comm    communicator,
+            const double      value,
+            const Point<dim> &point)
+    {
+      std::array<double, dim + 1> own;
+      own[0] = value;
+      for (unsigned int d = 0; d < dim; ++d)
+        own[d + 1] = point[d];
+      std::pair<double, Point<dim>> result(value, point);
+      for (const auto &other : Utilities::MPI::all_gather(communicator, own))
+        if (other[0] > result.first)
+          {
+            result.first = other[0];
+            for (unsigned int d = 0; d < dim; ++d)
+              result.second[d] = other[d + 1];
+          }
+      return result;
+    }
+
+
+
+    // The coarse mesh is known to all processes.
+    template <int dim>
+    void
+    warn_of_cracks(const parallel::distributed::Triangulation<dim> &mesh,
+                   std::vector<std::string>                        &warnings)
+    {
+      double smallest = std::numeric_limits<double>::max();
+      for (const auto &cell : mesh.cell_iterators_on_level(0))
+        smallest = std::min(smallest, cell->diameter());
+      const double unit = 1e-6 * smallest;
+
+      std::map<std::array<std::int64_t, dim>, unsigned int> faces;
+      unsigned int                                          n_pairs = 0;
+      Point<dim>                                            where;
+      for (const auto &cell : mesh.cell_iterators_on_level(0))
+        for (const unsigned int f : cell->face_indices())
+          if (cell->at_boundary(f))
+            {
+              const Point<dim>              center = cell->face(f)->center();
+              std::array<std::int64_t, dim> key;
+              for (unsigned int d = 0; d < dim; ++d)
+                key[d] = std::llround(center[d] / unit);
+              if (++faces[key] == 2)
+                {
+                  ++n_pairs;
+                  where = center;
+                }
+            }
+      if (n_pairs > 0)
+        warnings.push_back(
+          "Warning: " + std::to_string(n_pairs) + " pair(s) of boundary " +
+          (dim == 2 ? "edges" : "faces") +
+          " lie on each other, one of them at " + describe(where) +
+          ", so that the body is cut there; if it should not be, merge the "
+          "nodes "
+          "of the mesh.");
+    }
+
+
+
+    template <int dim>
+    void
+    warn_of_polygons(const parallel::distributed::Triangulation<dim> &mesh,
+                     const types::boundary_id  contact_id,
+                     std::vector<std::string> &warnings)
+    {
+      const FE_Q<dim>   element(1);
+      FEFaceValues<dim> values(
+        element, QMidpoint<dim - 1>(), update_normal_vectors);
+      std::map<unsigned int, std::vector<Tensor<1, dim>>> normals;
+      std::map<unsigned int, Point<dim>>                  points;
+      for (const auto &cell : mesh.cell_iterators_on_level(0))
+        for (const unsigned int f : cell->face_indices())
+          if (cell->at_boundary(f) &&
+              cell->face(f)->boundary_id() == contact_id)
+            {
+              values.reinit(cell, f);
+              for (const unsigned int v : cell->face(f)->vertex_indices())
+                {
+                  const unsigned int vertex = cell->face(f)->vertex_index(v);
+                  normals[vertex].push_back(values.normal_vector(0));
+                  points[vertex] = cell->face(f)->vertex(v);
+                }
+            }
+      double     angle = 0;
+      Point<dim> where;
+      for (const auto &[vertex, list] : normals)
+        for (const auto &a : list)
+          {
+            const double here = degrees(a * list.front());
+            if (here < smallest_corner && here > angle)
+              {
+                angle = here;
+                where = points[vertex];
+              }
+          }
+      if (angle > smallest_edge)
+        warnings.push_back("Warning: the contact boundary is that of the mesh "
+                           "file, with edges of "
+                           "up to " +
+                           number(angle) + " degrees, one of them at " +
+                           describe(where) +
+                           ", which stay however fine the mesh, and where the "
+                           "contact stress has "
+                           "peaks; a finer mesh file has flatter ones.");
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  std::vector<std::string>
+  warnings_at_start(const Discretization<dim> &discretization,
+                    const Parameters          &parameters)
+  {
+    const Scene<dim> &scene = discretization.scene();
+    const auto       &mesh =
+      dynamic_cast<const parallel::distributed::Triangulation<dim> &>(
+        discretization.dof_handler().get_triangulation());
+    const MPI_Comm communicator = discretization.constraints().communicator();
+
+    std::vector<std::string> warnings;
+    warn_of_cracks(mesh, warnings);
+    const bool is_refined = parameters.refinement.initial_refinements > 0 ||
+      parameters.refinement.levels > 0;
+    if (parameters.scene.geometry == GeometryKind::mesh_file && is_refined)
+      warn_of_polygons(mesh, scene.contact_boundary_id(), warnings);
+
+    if (scene.obstacle().empty() ||
+        scene.contact_boundary_id() == numbers::invalid_boundary_id)
+      return warnings;
+    const unsigned int n_nodes =
+      Utilities::MPI::sum(discretization.contact().size(), communicator);
+    if (n_nodes == 0)
+      warnings.push_back(
+        "Warning: no node of the contact boundary faces the obstacle, so there "
+        "will be no contact; does the normal of the obstacle point into it, "
+        "and "
+        "is 'Contact/Boundary id' the right one?");
+
+    double     depth = 0, size = 0;
+    Point<dim> where;
+    for (const ContactNode<dim> &p : discretization.contact())
+      {
+        size = std::max(size, std::abs(p.gap) + p.point.norm());
+        if (-p.gap > depth)
+          {
+            depth = -p.gap;
+            where = p.point;
+          }
+      }
+    const auto deepest = largest<dim>(communicator, depth, where);
+    size               = Utilities::MPI::max(size, communicator);
+    if (deepest.first > 1e-6 * size)
+      warnings.push_back("Warning: the body lies inside the obstacle before it "
+                         "is loaded, at " +
+                         describe(deepest.second) + " by " +
+                         number(deepest.first) +
+                         ", and will be pushed out of it; if this is no press "
+                         "fit, move one of them.");
+    return warnings;
+  }
+
+
+
+  template <int dim>
+  ContactGeometry
+  contact_geometry(const Discretization<dim> &discretization,
+                   const VectorType          &displacement,
+                   const ContactState        &state)
+  {
+    const Scene<dim>    &scene    = discretization.scene();
+    const Obstacle<dim> &obstacle = scene.obstacle();
+    const MPI_Comm communicator   = discretization.constraints().communicator();
+
+    ContactGeometry result;
+    const auto     &contact = discretization.contact();
+    for (unsigned int p = 0; p < contact.size(); ++p)
+      {
+        Tensor<1, dim> u;
+        for (unsigned int d = 0; d < dim; ++d)
+          u[d] = displacement.local_element(dim * contact[p].node + d);
+        result.contact_displacement =
+          std::max(result.contact_displacement, u.norm());
+        if (!state.in_contact(p))
+          continue;
+        ++result.n_contact;
+        if (obstacle.empty())
+          continue;
+        result.angle = std::max(
+          result.angle,
+          degrees(contact[p].normal() * obstacle.normal(contact[p].point)));
+        const Point<dim> moved    = contact[p].point + u;
+        const double     distance = obstacle.gap(moved, obstacle.normal(moved));
+        result.distance = std::max(result.distance, std::abs(distance));
+      }
+
+    // The box, and the largest displacement.
+    std::vector<double> box(2 * dim, -std::numeric_limits<double>::max());
+    for (const auto &cell :
+         discretization.dof_handler().active_cell_iterators())
+      if (cell->is_locally_owned())
+        for (const unsigned int v : cell->vertex_indices())
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              box[d]       = std::max(box[d], cell->vertex(v)[d]);
+              box[dim + d] = std::max(box[dim + d], -cell->vertex(v)[d]);
+            }
+    max_over_processes(box, communicator);
+    for (unsigned int d = 0; d < dim; ++d)
+      result.size += std::pow(box[d] + box[dim + d], 2);
+    result.size         = std::sqrt(result.size);
+    result.displacement = displacement.linfty_norm();
+    result.n_contact    = Utilities::MPI::sum(result.n_contact, communicator);
+    result.angle        = Utilities::MPI::max(result.angle, communicator);
+    result.distance     = Utilities::MPI::max(result.distance, communicator);
+    result.contact_displacement =
+      Utilities::MPI::max(result.contact_displacement, communicator);
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::vector<std::string>
+  warnings_at_end(const Discretization<dim> &discretization,
+                  const VectorType          &displacement,
+                  const ContactState        &state)
+  {
+    const Scene<dim>     &scene = discretization.scene();
+    const ContactGeometry g =
+      contact_geometry(discretization, displacement, state);
+
+    std::vector<std::string> warnings;
+    // A scene with a known solution is one for mathematicians.
+    if (g.displacement > large_displacement * g.size &&
+        scene.exact_displacement() == nullptr)
+      warnings.push_back(
+        "Warning: the largest displacement is " + number(g.displacement) +
+        " in a body of size " + number(g.size) +
+        "; strains and displacements are supposed to be small here.");
+    if (scene.obstacle().empty() ||
+        scene.contact_boundary_id() == numbers::invalid_boundary_id)
+      return warnings;
+    if (g.n_contact == 0)
+      warnings.push_back("Warning: in the end no node is in contact with the "
+                         "obstacle; do the loads push the body towards it, and "
+                         "does 'Obstacle/Normal' point into the obstacle?");
+    if (scene.contact_normal() == ContactNormal::body && g.angle > large_angle)
+      warnings.push_back(
+        "Warning: nodes are in contact whose normal is up to " +
+        number(g.angle) +
+        " degrees off that of the obstacle, so that forces do not obey the law "
+        "of friction; set 'Contact/Contact normal = obstacle'.");
+    if (g.distance > large_distance * g.contact_displacement)
+      warnings.push_back(
+        "Warning: displaced as they are, nodes in contact are up to " +
+        number(g.distance) +
+        " away from the obstacle, or inside it, at "
+        "displacements of " +
+        number(g.contact_displacement) +
+        "; gaps are those of the undeformed body, and displacements too large "
+        "for that.");
+    return warnings;
+  }
+
+
+
+  template std::vector<std::string> warnings_at_start(const Discretization<2> &,
+                                                      const Parameters &);
+  template std::vector<std::string> warnings_at_start(const Discretization<3> &,
+                                                      const Parameters &);
+  template ContactGeometry          contact_geometry(const Discretization<2> &,
+                                                     const VectorType &,
+                                                     const ContactState &);
+  template ContactGeometry          contact_geometry(const Discretization<3> &,
+                                                     const VectorType &,
+                                                     const ContactState &);
+  template std::vector<std::string> warnings_at_end(const Discretization<2> &,
+                                                    const VectorType &,
+                                                    const ContactState &);
+  template std::vector<std::string> warnings_at_end(const Discretization<3> &,
+                                                    const VectorType &,
+                                                    const ContactState &);
+} // namespace Friction

@@ -1,0 +1,77 @@
+#ifndef friction_output_warnings_h
+#define friction_output_warnings_h
+
+#include <common/contact/contact_state.h>
+#include <common/discretization/discretization.h>
+#include <common/parameters/parameters.h>
+
+#include <string>
+#include <vector>
+
+namespace Friction
+{
+  /*
+   * What is no error, but should be known before a solution is believed. All
+   * functions are collective, and return the same sentences on all processes.
+   */
+
+  /**
+   * About the mesh and the contact boundary, before anything is solved:
+   * - boundary faces of the coarse mesh that lie on each other: a crack, or
+   *   nodes that should have been merged;
+   * - a contact boundary from a mesh file that is a polygon and stays one,
+   *   however fine the mesh;
+   * - a contact boundary of which no node faces the obstacle;
+   * - nodes that lie inside the obstacle.
+   */
+  template <int dim>
+  std::vector<std::string>
+  warnings_at_start(const Discretization<dim> &discretization,
+                    const Parameters          &parameters);
+
+  /** How well what small displacements suppose is true of a solution. */
+  struct ContactGeometry
+  {
+    /// Over all processes.
+    unsigned int n_contact = 0;
+
+    /// The largest angle between the normal in which a node in contact has its
+    /// gap and the direction straight to the obstacle; degrees.
+    double angle = 0;
+
+    /// How far a node in contact is from the obstacle when it is displaced,
+    /// outside or inside; a length.
+    double distance = 0;
+
+    /// The largest displacement at the contact boundary, and of all nodes;
+    /// lengths.
+    double contact_displacement = 0, displacement = 0;
+
+    /// The diameter of a box around the body, a length.
+    double size = 0;
+  };
+
+  /**
+   * @param displacement  with the numbering of the discretisation.
+   */
+  template <int dim>
+  ContactGeometry contact_geometry(const Discretization<dim> &discretization,
+                                   const VectorType          &displacement,
+                                   const ContactState        &state);
+
+  /**
+   * About a solution:
+   * - no node is in contact;
+   * - normals of the body are used where they are not those of the obstacle, so
+   *   that forces do not obey the law of friction;
+   * - displacements are not small against the body, or nodes in contact are not
+   *   where the obstacle is.
+   */
+  template <int dim>
+  std::vector<std::string>
+  warnings_at_end(const Discretization<dim> &discretization,
+                  const VectorType          &displacement,
+                  const ContactState        &state);
+} // namespace Friction
+
+#endif

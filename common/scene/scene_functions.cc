@@ -1,0 +1,173 @@
+#include <common/input_error.h>
+#include <common/scene/scene_functions.h>
+
+#include <deal.II/base/point.h>
+
+#include <deal.II/lac/vector.h>
+
+#include <cmath>
+#include <sstream>
+
+namespace Friction
+{
+  namespace
+  {
+    template <int dim>
+    class CheckedFunction : public Function<dim>
+    {
+    public:
+      CheckedFunction(const std::shared_ptr<const Function<dim>> &function,
+                      const std::string                          &where,
+                      const std::string                          &text)
+        : Function<dim>(function->n_components)
+        , function(function)
+        , where(where)
+        , text(text)
+      {}
+
+      void
+      vector_value(const Point<dim> &p, Vector<double> &values) const override
+      {
+        function->vector_value(p, values);
+        for (unsigned int c = 0; c < values.size(); ++c)
+          check(values[c], p);
+      }
+
+      double
+      value(const Point<dim>  &p,
+            const unsigned int component = 0) const override
+      {
+        const double value = function->value(p, component);
+        check(value, p);
+        return value;
+      }
+
+      Tensor<1, dim>
+      gradient(const Point<dim>  &p,
+               const unsigned int component = 0) const override
+      {
+        const Tensor<1, dim> gradient = function->gradient(p, component);
+        for (unsigned int d = 0; d < dim; ++d)
+          check(gradient[d], p);
+        return gradient;
+      }
+
+    private:
+      void
+      check(const double value, const Point<dim> &p) const
+      {
+        if (std::isfinite(value))
+          return;
+        std::ostringstream sentence;
+        sentence << where << ": '" << text << "' is " << value << " at (";
+        for (unsigned int d = 0; d < dim; ++d)
+          sentence << (d > 0 ? ", " : "") << p[d];
+        sentence << "), where a finite number is needed; correct it.";
+        throw InputError(sentence.str());
+      }
+
+      const std::shared_ptr<const Function<dim>> function;
+      const std::string                          where;
+      const std::string                          text;
+    };
+
+
+
+    template <int dim>
+    class TurnedFunction : public Function<dim>
+    {
+    public:
+      TurnedFunction(const std::shared_ptr<const Function<dim>> &function,
+                     const Tensor<2, dim>                       &rotation)
+        : Function<dim>(function->n_components)
+        , function(function)
+        , rotation(rotation)
+      {}
+
+      void
+      vector_value(const Point<dim> &p, Vector<double> &values) const override
+      {
+        const Point<dim> original(transpose(rotation) * p);
+        if (this->n_components == 1)
+          {
+            values[0] = function->value(original);
+            return;
+          }
+        Tensor<1, dim> value;
+        for (unsigned int c = 0; c < dim; ++c)
+          value[c] = function->value(original, c);
+        value = rotation * value;
+        for (unsigned int c = 0; c < dim; ++c)
+          values[c] = value[c];
+      }
+
+      double
+      value(const Point<dim>  &p,
+            const unsigned int component = 0) const override
+      {
+        Vector<double> values(this->n_components);
+        vector_value(p, values);
+        return values[component];
+      }
+
+      Tensor<1, dim>
+      gradient(const Point<dim>  &p,
+               const unsigned int component = 0) const override
+      {
+        const Point<dim> original(transpose(rotation) * p);
+        if (this->n_components == 1)
+          return rotation * function->gradient(original);
+        Tensor<2, dim> gradient;
+        for (unsigned int c = 0; c < dim; ++c)
+          gradient[c] = function->gradient(original, c);
+        return (rotation * gradient * transpose(rotation))[component];
+      }
+
+    private:
+      std::shared_ptr<const Function<dim>> function;
+      Tensor<2, dim>                       rotation;
+    };
+  } // namespace
+
+
+
+  template <int dim>
+  std::shared_ptr<const Function<dim>>
+  checked_function(const std::shared_ptr<const Function<dim>> &function,
+                   const std::string                          &where,
+                   const std::string                          &text)
+  {
+    return std::make_shared<CheckedFunction<dim>>(function, where, text);
+  }
+
+
+
+  template <int dim>
+  std::shared_ptr<const Function<dim>>
+  turned_function(const std::shared_ptr<const Function<dim>> &function,
+                  const Tensor<2, dim>                       &rotation)
+  {
+    return std::make_shared<TurnedFunction<dim>>(function, rotation);
+  }
+
+
+
+  template std::shared_ptr<const Function<1>>
+  checked_function(const std::shared_ptr<const Function<1>> &,
+                   const std::string &,
+                   const std::string &);
+  template std::shared_ptr<const Function<2>>
+  checked_function(const std::shared_ptr<const Function<2>> &,
+                   const std::string &,
+                   const std::string &);
+  template std::shared_ptr<const Function<3>>
+  checked_function(const std::shared_ptr<const Function<3>> &,
+                   const std::string &,
+                   const std::string &);
+  template std::shared_ptr<const Function<2>>
+  turned_function(const std::shared_ptr<const Function<2>> &,
+                  const Tensor<2, 2> &);
+  template std::shared_ptr<const Function<3>>
+  turned_function(const std::shared_ptr<const Function<3>> &,
+                  const Tensor<2, 3> &);
+} // namespace Friction
