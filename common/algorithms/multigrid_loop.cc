@@ -27,6 +27,24 @@ namespace Friction
 
 
 
+    // Whether increments are nothing but rounding errors: they are as small,
+    // and no longer become smaller. A tolerance below that can only be met so.
+    bool
+    is_rounding(const std::vector<CycleInfo> &cycles)
+    {
+      constexpr double       largest = 1e-12;
+      constexpr unsigned int window  = 4;
+      const std::size_t      n       = cycles.size();
+      if (n <= window || cycles[n - 1 - window].increment > largest)
+        return false;
+      for (std::size_t i = n - window; i < n; ++i)
+        if (cycles[i].increment < .5 * cycles[n - 1 - window].increment)
+          return false;
+      return true;
+    }
+
+
+
     // A body that merely moves has no energy but that of rounding errors, with
     // which no increment should be compared. The diagonal of the matrix says
     // what energy a displacement of this size could have.
@@ -145,16 +163,20 @@ namespace Friction
         last.truncated = sums[truncated];
         if (progress)
           progress(cycle, last.increment);
+        if (limits.budget)
+          limits.budget->take_cycle();
         if (!std::isfinite(last.increment))
           break;
         result.algebraic_error = size * extrapolated_error(result.cycles);
         if (last.increment <= limits.inner_tolerance ||
+            is_rounding(result.cycles) ||
             (cycle > 1 && result.algebraic_error <= limits.energy_tolerance))
           {
             result.converged = true;
             break;
           }
         if (cycle >= limits.maximum_cycles ||
+            (limits.budget && limits.budget->is_spent()) ||
             (limits.gives_up_early &&
              result.stalls(
                std::max(limits.inner_tolerance, limits.energy_tolerance / size),

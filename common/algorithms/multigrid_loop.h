@@ -4,6 +4,7 @@
 #include <common/iteration/monotone_multigrid.h>
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace Friction
@@ -25,6 +26,50 @@ namespace Friction
 
 
 
+  /**
+   * The cycles that several iterations may take together, and those of them
+   * that the present attempt at a solution may take.
+   */
+  class CycleBudget
+  {
+  public:
+    explicit CycleBudget(const unsigned int n_cycles)
+      : left(n_cycles)
+      , left_of_attempt(n_cycles)
+    {}
+
+    /**
+     * Another attempt begins. It gets half of what is left, so that there is
+     * something left for others, or all if it is the last one.
+     * @return whether there is anything left.
+     */
+    bool
+    begin_attempt(const bool is_last = false)
+    {
+      left_of_attempt = is_last ? left : (left + 1) / 2;
+      return left > 0;
+    }
+
+    void
+    take_cycle()
+    {
+      left -= (left > 0);
+      left_of_attempt -= (left_of_attempt > 0);
+    }
+
+    /** By the present attempt. */
+    bool
+    is_spent() const
+    {
+      return left_of_attempt == 0;
+    }
+
+  private:
+    unsigned int left, left_of_attempt;
+  };
+
+
+
   /** When a multigrid iteration ends. */
   struct MultigridLimits
   {
@@ -40,6 +85,9 @@ namespace Friction
     /// End early if the iteration would not arrive within that many cycles;
     /// see MultigridResult::stalls().
     bool gives_up_early = false;
+
+    /// Ends when these are spent; null for no such limit.
+    std::shared_ptr<CycleBudget> budget;
   };
 
 

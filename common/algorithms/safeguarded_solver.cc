@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <sstream>
 
@@ -55,30 +56,6 @@ namespace Friction
 
 
 
-    // The first attempt may give an iteration up early, since there is
-    // something else to be tried.
-    CoulombSettings
-    first_settings(const SolverSettings &settings)
-    {
-      CoulombSettings result(settings);
-      result.limits.gives_up_early = true;
-      return result;
-    }
-
-
-
-    // What all other attempts have in common. They are to find a solution, to
-    // the usual tolerance.
-    CoulombSettings
-    fallback_settings(const SolverSettings &settings)
-    {
-      CoulombSettings result         = first_settings(settings);
-      result.limits.energy_tolerance = 0.;
-      return result;
-    }
-
-
-
     // Notes what has been tried: its outcome, and all the cycles that it took,
     // which may be those of several solutions.
     void
@@ -114,6 +91,32 @@ namespace Friction
   {
     Assert(&problem == &iteration.problem(),
            ExcMessage("The iteration is that of another problem."));
+  }
+
+
+
+  // Whatever an attempt is, it may give up when it is getting nowhere.
+  template <int dim>
+  CoulombSettings
+  SafeguardedSolver<dim>::first_settings() const
+  {
+    CoulombSettings result(settings);
+    result.limits.gives_up_early = true;
+    result.limits.budget         = budget;
+    return result;
+  }
+
+
+
+  // What all other attempts have in common. They are to find a solution, to the
+  // usual tolerance.
+  template <int dim>
+  CoulombSettings
+  SafeguardedSolver<dim>::fallback_settings() const
+  {
+    CoulombSettings result         = first_settings();
+    result.limits.energy_tolerance = 0.;
+    return result;
   }
 
 
@@ -186,6 +189,7 @@ namespace Friction
       return CoulombSolver<dim>(iteration, CoulombSettings(settings))
         .solve(u, state, progress);
 
+    budget = std::make_shared<CycleBudget>(settings.total_cycles);
     const PhaseCosts   before        = phase_costs(problem.communicator());
     const bool         coulomb       = problem.has_coulomb_friction();
     const VectorType   initial       = u;
@@ -193,8 +197,22 @@ namespace Friction
     const std::string  name          = name_of(problem, settings);
     SolverReport       all;
     const Search       search = {u, state, all, progress};
-    SolverReport       report =
-      attempt(name, iteration, first_settings(settings), search);
+    SolverReport report = attempt(name, iteration, first_settings(), search);
+
+    // If nothing succeeds, what violates the law least is returned.
+    double       smallest_violation = std::numeric_limits<double>::infinity();
+    VectorType   best_u;
+    ContactState best_state(0, false);
+    const auto   keep_best = [&](const VectorType   &other,
+                               const ContactState &other_state) {
+      const double violation = report.certificate.largest();
+      if (report.converged || !(violation < smallest_violation))
+        return;
+      smallest_violation = violation;
+      best_u             = other;
+      best_state         = other_state;
+    };
+    keep_best(u, state);
 
     if (!report.converged)
       {
@@ -210,13 +228,15 @@ namespace Friction
           !outer_failure && (!coulomb || !phases_change(report));
         if (!slow_corrections && !outer_failure)
           {
+            budget->begin_attempt();
             report           = attempt(name + " with short steps",
                              cautious,
-                             fallback_settings(settings),
+                             fallback_settings(),
                              search);
             slow_corrections = !phases_change(report);
+            keep_best(u, state);
           }
-        if (!report.converged && slow_corrections)
+        if (!report.converged && slow_corrections && budget->begin_attempt())
           {
             LineSearch<dim> whole_steps(
               iteration.functional(),
@@ -226,12 +246,16 @@ namespace Friction
               cautious.with(algebraic_correction()).with(whole_steps);
             report = attempt(name + " with algebraic corrections",
                              without_levels,
-                             fallback_settings(settings),
+                             fallback_settings(),
                              search);
+            keep_best(u, state);
           }
       }
-    if (!report.converged && coulomb)
-      report = mixed_algorithm_2(search);
+    if (!report.converged && coulomb && budget->begin_attempt())
+      {
+        report = mixed_algorithm_2(search);
+        keep_best(u, state);
+      }
     // The last two start anew, and what they have got to is of no use if they
     // do not arrive.
     const auto start_anew = [&](const auto &method) {
@@ -244,10 +268,10 @@ namespace Friction
           state = other_state;
         }
     };
-    if (!report.converged && coulomb)
+    if (!report.converged && coulomb && budget->begin_attempt())
       start_anew(
         [&](const Search &other) { return careful_algorithm_2(other); });
-    if (!report.converged && coulomb)
+    if (!report.converged && coulomb && budget->begin_attempt(true))
       start_anew([&](const Search &other) { return continuation(other); });
 
     if (all.attempts.size() > 1)
@@ -255,7 +279,14 @@ namespace Friction
         // What is reported of a failure is what is returned, and not the end of
         // an attempt that has been thrown away.
         if (!report.converged)
-          certify(report, iteration.functional(), u, state);
+          {
+            if (std::isfinite(smallest_violation))
+              {
+                u     = best_u;
+                state = best_state;
+              }
+            certify(report, iteration.functional(), u, state);
+          }
         report.cycles   = all.cycles;
         report.attempts = all.attempts;
         report.costs    = phase_costs(problem.communicator()) - before;
@@ -269,7 +300,7 @@ namespace Friction
   SolverReport
   SafeguardedSolver<dim>::mixed_algorithm_2(const Search &search)
   {
-    CoulombSettings mixed        = fallback_settings(settings);
+    CoulombSettings mixed        = fallback_settings();
     mixed.algorithm              = Algorithm::fixed_point;
     mixed.outer_damping          = .5;
     mixed.mixed_outer_iterations = 10;
@@ -279,7 +310,7 @@ namespace Friction
     const std::string      name   = "Algorithm 2 with mixed normal forces";
     MonotoneMultigrid<dim> best   = best_iteration();
     SolverReport           report = attempt(name, best, mixed, search);
-    if (!report.inner_converged)
+    if (!report.inner_converged && !budget->is_spent())
       {
         MonotoneMultigrid<dim> without_levels =
           best.with(algebraic_correction());
@@ -300,7 +331,7 @@ namespace Friction
   SolverReport
   SafeguardedSolver<dim>::careful_algorithm_2(const Search &search)
   {
-    CoulombSettings careful          = fallback_settings(settings);
+    CoulombSettings careful          = fallback_settings();
     careful.algorithm                = Algorithm::fixed_point;
     careful.outer_damping            = .02;
     careful.mixed_outer_iterations   = 0;
@@ -314,7 +345,7 @@ namespace Friction
     const Search inner = {search.u, search.state, steps, search.progress};
     MonotoneMultigrid<dim> best   = best_iteration();
     SolverReport           report = attempt(name, best, careful, inner);
-    if (report.inner_converged)
+    if (report.inner_converged && !budget->is_spent())
       {
         careful.outer_tolerance        = settings.outer_tolerance;
         careful.mixed_outer_iterations = 10;
@@ -341,7 +372,7 @@ namespace Friction
     constexpr double smallest_factor = 1.05;
     double           solved = 0, factor = 2;
     SolverReport     report, steps;
-    while (solved < target)
+    while (solved < target && !budget->is_spent())
       {
         const double coefficient     = solved == 0
               ? std::min(easy, target / 2)

@@ -39,6 +39,10 @@ namespace Friction
    * forces given is continuous and bounded, and Brouwer's theorem applies. But
    * it may have several, and a solution that is not found is reported as what
    * it is, by SolverReport::converged.
+   *
+   * All attempts together take SolverSettings::total_cycles cycles at most, and
+   * each of them half of those that are left, so that a problem without hope
+   * comes to an end.
    */
   template <int dim>
   class SafeguardedSolver
@@ -74,6 +78,9 @@ namespace Friction
     MonotoneMultigrid<dim> &iteration;
     const SolverSettings    settings;
 
+    // Of the present solve().
+    std::shared_ptr<CycleBudget> budget;
+
     // Parts of later attempts, made when the first of them is.
     std::unique_ptr<Linearization<dim>>       phases;
     std::unique_ptr<TruncatedCorrection<dim>> truncated;
@@ -93,6 +100,10 @@ namespace Friction
       SolverReport   &all;
       const Progress &progress;
     };
+
+    CoulombSettings first_settings() const;
+
+    CoulombSettings fallback_settings() const;
 
     SolverReport attempt(const std::string      &name,
                          MonotoneMultigrid<dim> &with_iteration,

@@ -162,14 +162,19 @@ namespace Friction
             for (unsigned int d = 0; d < dim; ++d)
               normal[d] = normals.local_element(dim * entry.first + d);
             ContactNode<dim> node;
-            node.node     = entry.first;
-            node.point    = entry.second;
-            node.measure  = measures.local_element(dim * entry.first);
-            node.frame[0] = (scene.contact_normal() == ContactNormal::body ||
-                             scene.obstacle().empty())
-              ? normal / normal.norm()
-              : scene.obstacle().normal(entry.second);
-            add_node(node, constraints, scene);
+            node.node    = entry.first;
+            node.point   = entry.second;
+            node.measure = measures.local_element(dim * entry.first);
+            const Tensor<1, dim> outward = normal / normal.norm();
+            const bool           of_body =
+              scene.contact_normal() == ContactNormal::body ||
+              scene.obstacle().empty();
+            node.frame[0] =
+              of_body ? outward : scene.obstacle().normal(entry.second);
+            // From the far side of the body the way to the obstacle leads
+            // through the body.
+            if (node.frame[0] * outward > Obstacle<dim>::flattest_cosine)
+              add_node(node, constraints, scene);
           }
     });
   }

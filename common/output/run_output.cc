@@ -61,12 +61,7 @@ namespace Friction
              scene.contact_boundary_id(),
              parameters.output.format)
     , checkpoints(directory, communicator)
-  {
-    for (const std::string &warning : parameters.warnings)
-      the_console.warning(warning);
-    if (!scene.warning().empty())
-      the_console.warning(scene.warning());
-  }
+  {}
 
 
 

@@ -33,8 +33,7 @@ namespace Friction
 
     /**
      * Creates the output directory, so that a run which cannot write anything
-     * fails in its first second and not after its last level, and prints the
-     * warning that the scene may have.
+     * fails in its first second and not after its last level.
      *
      * @param out      where the console of the first process prints.
      * @param version  of the program.

@@ -194,7 +194,9 @@ namespace Friction
         discretization.dof_handler().get_triangulation());
     const MPI_Comm communicator = discretization.constraints().communicator();
 
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings = parameters.warnings;
+    if (!scene.warning().empty())
+      warnings.push_back(scene.warning());
     warn_of_cracks(mesh, warnings);
     const bool is_refined = parameters.refinement.initial_refinements > 0 ||
       parameters.refinement.levels > 0;

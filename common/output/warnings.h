@@ -16,7 +16,8 @@ namespace Friction
    */
 
   /**
-   * About the mesh and the contact boundary, before anything is solved:
+   * About the scene, the mesh and the contact boundary, before anything is
+   * solved: what Parameters::warnings and Scene::warning() say, and
    * - boundary faces of the coarse mesh that lie on each other: a crack, or
    *   nodes that should have been merged;
    * - a contact boundary from a mesh file that is a polygon and stays one,

@@ -383,7 +383,14 @@ namespace Friction
        "Maximum cycles",
        "200",
        steps,
-       "Give up after this many multigrid cycles on a level."},
+       "Give up after this many multigrid cycles of one iteration."},
+      {"Solver",
+       "Total cycles",
+       "20000",
+       steps,
+       "Give up after this many multigrid cycles of all attempts that "
+       "safeguards make on a level, each of which gets half of those that are "
+       "left."},
       {"Solver",
        "Maximum outer iterations",
        "50",

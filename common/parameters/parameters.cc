@@ -11,6 +11,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <memory>
 #include <sstream>
@@ -158,7 +159,24 @@ namespace Friction
       double
       number(const std::string &path)
       {
-        return Utilities::string_to_double(get(path));
+        // Not string_to_double(), which throws where a number is too small.
+        const double value = std::strtod(get(path).c_str(), nullptr);
+        if (!(std::abs(value) <= largest_number))
+          throw InputError(subject(path) + " is " + get(path) +
+                           ", which is beyond 1e30; choose other units.");
+        return value;
+      }
+
+      double
+      positive_number(const std::string &path)
+      {
+        const double value = number(path);
+        if (!(value >= 1. / largest_number))
+          throw InputError(
+            subject(path) + " is " + get(path) + ", but it must " +
+            (value > 0. ? "not be below 1e-30; choose other units."
+                        : "be positive."));
+        return value;
       }
 
       unsigned int
@@ -456,7 +474,7 @@ namespace Friction
           if (!Patterns::Double(1e-300).match(text))
             throw InputError(values.subject(name) + " is '" + text +
                              "'; take a positive number, or 'discretisation'.");
-          solver.inner_tolerance = Utilities::string_to_double(text);
+          solver.inner_tolerance = std::strtod(text.c_str(), nullptr);
           return;
         }
       if (solver.algorithm == Algorithm::fixed_point)
@@ -596,6 +614,9 @@ namespace Friction
     if (!std::isfinite(value))
       throw InputError(where + ": '" + expression +
                        "' is not a finite number; correct it.");
+    if (std::abs(value) > largest_number)
+      throw InputError(where + ": '" + expression +
+                       "' is beyond 1e30; choose other units.");
     return value;
   }
 
@@ -620,13 +641,9 @@ namespace Friction
 
     // The material and the coefficient of friction come first, since
     // expressions may use them.
-    const double E  = values.number("Material/Young's modulus");
+    const double E  = values.positive_number("Material/Young's modulus");
     const double nu = values.number("Material/Poisson ratio");
     const double F  = values.number("Contact/Friction coefficient");
-    if (!(E > 0.))
-      throw InputError(values.subject("Material/Young's modulus") + " is " +
-                       values.get("Material/Young's modulus") +
-                       ", but it must be positive.");
     if (!(nu > -1. && nu < .5))
       throw InputError(values.subject("Material/Poisson ratio") + " is " +
                        values.get("Material/Poisson ratio") +
@@ -683,10 +700,13 @@ namespace Friction
                                          : GeometryKind::mesh_file);
       scene.size = vector_of("Scene/Size");
       for (const double length : scene.size)
-        if (!(length > 0.))
+        if (!(length >= 1. / largest_number))
           throw InputError(values.subject("Scene/Size") + " is '" +
                            values.get("Scene/Size") +
-                           "', but all lengths must be positive.");
+                           "', but all lengths must be positive" +
+                           (length > 0. ? ", and 1e-30 at least; choose other "
+                                          "units."
+                                        : "."));
       for (const double n : vector_of("Scene/Subdivisions"))
         {
           if (!(n >= 1. && n <= 1e6 && n == std::floor(n)))
@@ -695,8 +715,8 @@ namespace Friction
                              "', but it must consist of positive integers.");
           scene.subdivisions.push_back(static_cast<unsigned int>(n));
         }
-      scene.radius = values.number("Scene/Radius");
-      scene.length = values.number("Scene/Length");
+      scene.radius = values.positive_number("Scene/Radius");
+      scene.length = values.positive_number("Scene/Length");
       scene.layers = values.integer("Scene/Layers");
       scene.coarse_grid =
         (values.get("Scene/Coarse grid") == "O-grid" ? CoarseGrid::o_grid
@@ -731,7 +751,7 @@ namespace Friction
       obstacle.normal            = vector_of("Obstacle/Normal");
       obstacle.centers           = vectors_of("Obstacle/Centers");
       obstacle.axes              = vectors_of("Obstacle/Axes");
-      obstacle.radius            = values.number("Obstacle/Radius");
+      obstacle.radius            = values.positive_number("Obstacle/Radius");
       if (!values.get("Obstacle/Length").empty())
         {
           obstacle.length = parameters.expressions.evaluate(
@@ -836,6 +856,7 @@ namespace Friction
       solver.certificate_tolerance =
         values.number("Solver/Certificate tolerance");
       solver.maximum_cycles = values.integer("Solver/Maximum cycles");
+      solver.total_cycles   = values.integer("Solver/Total cycles");
       solver.maximum_outer_iterations =
         values.integer("Solver/Maximum outer iterations");
       solver.maximum_step_length = values.number("Solver/Maximum step length");

@@ -15,6 +15,13 @@
 namespace Friction
 {
   /**
+   * Whatever the units, a number beyond this is a mistake, and a length, a
+   * modulus or a radius below its inverse as well: squares of energies could no
+   * longer be represented.
+   */
+  constexpr double largest_number = 1e30;
+
+  /**
    * The names that the expressions of one scene may use besides the
    * coordinates: constants with a number, and definitions, which are
    * themselves expressions and are put in place of their names.

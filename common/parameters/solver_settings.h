@@ -101,7 +101,11 @@ namespace Friction
     /// force or gap, with which a solution is certified.
     double certificate_tolerance = 1e-6;
 
-    unsigned int maximum_cycles           = 200;
+    unsigned int maximum_cycles = 200;
+
+    /// All attempts of the safeguards together.
+    unsigned int total_cycles = 20000;
+
     unsigned int maximum_outer_iterations = 50;
 
     /// Largest step length in the line search after a coarse correction.

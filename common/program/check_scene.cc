@@ -23,13 +23,9 @@ namespace Friction
     VectorType guess;
     nest.make_guess(guess);
 
-    const Discretization<dim> &discretization = nest.discretization();
-    std::vector<std::string>   warnings       = parameters.warnings;
-    if (!nest.scene().warning().empty())
-      warnings.push_back(nest.scene().warning());
-    for (const std::string &warning :
-         warnings_at_start(discretization, parameters))
-      warnings.push_back(warning);
+    const Discretization<dim>     &discretization = nest.discretization();
+    const std::vector<std::string> warnings =
+      warnings_at_start(discretization, parameters);
 
     double smallest_gap = std::numeric_limits<double>::max();
     for (const ContactNode<dim> &p : discretization.contact())
@@ -52,7 +48,7 @@ namespace Friction
         << " degrees of freedom.\n";
     if (n_nodes > 0)
       out << n_nodes << " of its nodes may touch the obstacle; the nearest is "
-          << smallest_gap << " away from it.\n";
+          << smallest_gap + 0. << " away from it.\n";
     out << "Nothing has been solved or written; without --check the scene "
         << (warnings.empty() ? "runs as it is."
                              : "would run in spite of the warnings above.")

@@ -24,6 +24,10 @@ namespace Friction
   class Obstacle
   {
   public:
+    /// The cosine of the largest angle between a surface and a direction in
+    /// which it can be met.
+    static constexpr double flattest_cosine = .05;
+
     /// No obstacle at all.
     Obstacle() = default;
 
@@ -168,8 +172,6 @@ namespace Friction
       double         radius;
       double         length;
     };
-
-    static constexpr double flattest_cosine = .05;
 
     /// The part of a vector perpendicular to the axis of a rod.
     static Tensor<1, dim>

@@ -76,17 +76,17 @@ namespace Friction
 
 
 
+    // What is only rounding, compared with a size, would look important.
     template <int dim>
     std::string
-    describe(const Tensor<1, dim> &v)
+    describe(const Tensor<1, dim> &v, const double size)
     {
       std::ostringstream text;
       text.precision(4);
       text << '(';
-      // What is only rounding would look important.
       for (unsigned int d = 0; d < dim; ++d)
         text << (d > 0 ? ", " : "")
-             << (std::abs(v[d]) < 1e-10 * v.norm() ? 0. : v[d]);
+             << (std::abs(v[d]) < 1e-10 * size ? 0. : v[d]);
       text << ')';
       return text.str();
     }
@@ -100,7 +100,7 @@ namespace Friction
       for (unsigned int d = 0; d < dim; ++d)
         if (std::abs(std::abs(v[d]) - v.norm()) < 1e-8 * v.norm())
           return std::string(1, "xyz"[d]) + " direction";
-      return "direction " + describe(v / v.norm());
+      return "direction " + describe<dim>(v / v.norm(), 1.);
     }
 
 
@@ -125,7 +125,7 @@ namespace Friction
           const Tensor<1, 2> to_center(
             {-shift[1] / turn[0], shift[0] / turn[0]});
           return "a rotation around " +
-            describe(Tensor<1, dim>(part.center() + to_center));
+            describe<dim>(part.center() + to_center, part.size());
         }
       else
         {
@@ -133,7 +133,7 @@ namespace Friction
           const Tensor<1, dim> to_axis =
             cross_product_3d(turn, shift) / turn.norm_square();
           return "a rotation around the axis through " +
-            describe(Tensor<1, dim>(part.center() + to_axis)) + " in " +
+            describe<dim>(part.center() + to_axis, part.size()) + " in " +
             describe_direction(axis) +
             (std::abs(shift * axis) > 1e-6 * m.norm()
                ? " together with a displacement along it"
@@ -431,11 +431,14 @@ namespace Friction
                   for (const unsigned int v : face->vertex_indices())
                     {
                       const Point<dim>    &p = face->vertex(v);
+                      const Tensor<1, dim> outward =
+                        face_values.normal_vector(0);
                       const Tensor<1, dim> normal =
                         scene.contact_normal() == ContactNormal::body
-                        ? face_values.normal_vector(0)
+                        ? outward
                         : scene.obstacle().normal(p);
-                      if (std::isfinite(scene.obstacle().gap(p, normal)))
+                      if (normal * outward > Obstacle<dim>::flattest_cosine &&
+                          std::isfinite(scene.obstacle().gap(p, normal)))
                         normals.push_back(motions.transpose() *
                                           part.motions_at(p).transpose() *
                                           as_vector<dim>(normal));
@@ -534,8 +537,9 @@ namespace Friction
           name << "the body";
         else
           {
-            name << "the part of the body in " << describe<dim>(part.lower)
-                 << " to " << describe<dim>(part.upper) << " ("
+            name << "the part of the body in "
+                 << describe<dim>(part.lower, part.size()) << " to "
+                 << describe<dim>(part.upper, part.size()) << " ("
                  << part.cells.size() << " of " << cells.size()
                  << " coarse cells, which share no "
                  << (dim == 2 ? "edge" : "face") << " with the others";

@@ -1,4 +1,5 @@
 #include <common/input_error.h>
+#include <common/parameters/parameters.h>
 #include <common/scene/scene_functions.h>
 
 #include <deal.II/base/point.h>
@@ -56,13 +57,19 @@ namespace Friction
       void
       check(const double value, const Point<dim> &p) const
       {
-        if (std::isfinite(value))
+        if (std::abs(value) <= largest_number)
           return;
         std::ostringstream sentence;
-        sentence << where << ": '" << text << "' is " << value << " at (";
+        sentence << where << ": '" << text << "' is ";
+        // Not "-nan".
+        if (std::isnan(value))
+          sentence << "not a number";
+        else
+          sentence << value;
+        sentence << " at (";
         for (unsigned int d = 0; d < dim; ++d)
           sentence << (d > 0 ? ", " : "") << p[d];
-        sentence << "), where a finite number is needed; correct it.";
+        sentence << "), where a number up to 1e30 is needed; correct it.";
         throw InputError(sentence.str());
       }
 

@@ -118,7 +118,7 @@ bad 'prescribed displacement into the obstacle' 'into the obstacle' \
 bad 'prescribed displacement that competes with contact' 'competes' \
   "$block" 'Boundary conditions/Displacement=3: 0.02, -0.02; 0: free, 0'
 
-bad 'nothing prescribed' 'rigid' "$block" 'Boundary conditions/Displacement='
+bad 'nothing prescribed' 'not held against' "$block" 'Boundary conditions/Displacement='
 bad 'nothing prescribed vertically' 'y direction' \
   "$block" 'Boundary conditions/Displacement=3: 0.02, free'
 bad 'nothing prescribed horizontally' 'x direction' \

@@ -1,0 +1,585 @@
+"""Scenes and meshes that are not what they should be: each is refused in a sentence,
+or solved with a warning, and nothing wrong is solved without a word.
+
+Usage: wrong_input.py PROGRAM_2D PROGRAM_3D
+
+A case is a scene with overrides, and what is expected of it:
+- error: exit status 2, one line on standard error that ends as a sentence does and
+  in which a pattern is found, nothing on standard output, no file left behind;
+- warning: exit status 0, and the only lines that begin with "Warning:" are those of
+  the patterns, once each;
+- good: exit status 0 without a warning.
+"""
+import math
+import os
+import re
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+
+SCENES = {
+    # A block of two cells, pressed onto a plane and held by its symmetry.
+    'pressed': (2, {
+        'Scene/Size': '2, 1', 'Scene/Subdivisions': '2, 1',
+        'Obstacle/Kind': 'plane',
+        'Boundary conditions/Displacement': '0: 0, free',
+        'Boundary conditions/Traction': '3: 0, -0.01',
+        'Contact/Boundary id': '2', 'Contact/Friction coefficient': '0.3'}),
+    # The same, moved by its top.
+    'moved': (2, {
+        'Scene/Size': '2, 1', 'Scene/Subdivisions': '2, 1',
+        'Obstacle/Kind': 'plane',
+        'Boundary conditions/Displacement': '3: 0.01, -0.01',
+        'Contact/Boundary id': '2', 'Contact/Friction coefficient': '0.3'}),
+    # A mesh file: 1 left, 2 right, 3 bottom, 4 top, and the body 10.
+    'mesh': (2, {
+        'Scene/Geometry': 'mesh file', 'Obstacle/Kind': 'plane',
+        'Boundary conditions/Displacement': '4: 0.01, -0.01',
+        'Contact/Boundary id': '3', 'Contact/Friction coefficient': '0.3'}),
+    'pressed 3d': (3, {
+        'Obstacle/Kind': 'plane',
+        'Boundary conditions/Displacement': '0: 0, free, free; 2: free, 0, free',
+        'Boundary conditions/Traction': '5: 0, 0, -0.01',
+        'Contact/Boundary id': '4', 'Contact/Friction coefficient': '0.3'}),
+    # 1 the sides, 4 bottom, 5 top.
+    'mesh 3d': (3, {
+        'Scene/Geometry': 'mesh file', 'Obstacle/Kind': 'plane',
+        'Boundary conditions/Displacement': '5: 0.01, 0, -0.01',
+        'Contact/Boundary id': '4', 'Contact/Friction coefficient': '0.3'}),
+}
+
+LINE, TRIANGLE, QUAD, HEX, LINE3, QUAD9 = 1, 2, 3, 5, 8, 10
+
+
+def write_mesh(name, nodes, elements, names=(), version='2.2', binary=False):
+    """A file in Gmsh's format: nodes are points, elements (type, physical id, nodes
+    from 1 on), names (dimension, id, name). In version 4.1 each element has an entity
+    of its own."""
+    dimension = {LINE: 1, TRIANGLE: 2, QUAD: 2, HEX: 3, LINE3: 1, QUAD9: 2}
+    out = bytearray()
+
+    def text(s):
+        out.extend((s + '\n').encode())
+
+    def numbers(kinds, *values):
+        """As text, or in binary by the letters of struct."""
+        if binary:
+            out.extend(struct.pack('=' + kinds, *values))
+        else:
+            text(' '.join('%.17g' % v if k == 'd' else str(v)
+                          for k, v in zip(kinds, values)))
+
+    text('$MeshFormat')
+    text('%s %d 8' % (version, binary))
+    if binary:
+        out.extend(struct.pack('=i', 1))
+        text('')
+    text('$EndMeshFormat')
+    if names:
+        text('$PhysicalNames')
+        text(str(len(names)))
+        for d, i, n in names:
+            text('%d %d "%s"' % (d, i, n))
+        text('$EndPhysicalNames')
+    if version == '4.1':
+        text('$Entities')
+        of_dimension = [[k for k, e in enumerate(elements) if dimension[e[0]] == d]
+                        for d in range(4)]
+        numbers('qqqq', *[len(l) for l in of_dimension])
+        for d in range(1, 4):
+            for k in of_dimension[d]:
+                physical = [elements[k][1]] if elements[k][1] else []
+                numbers('idddddd' + 'q' + 'i' * len(physical) + 'q',
+                        k + 1, 0., 0., 0., 1., 1., 1., len(physical), *physical, 0)
+        if binary:
+            text('')
+        text('$EndEntities')
+    text('$Nodes')
+    if version == '4.1':
+        numbers('qqqq', 1, len(nodes), 1, len(nodes))
+        numbers('iiiq', 2, 1, 0, len(nodes))
+        for i in range(len(nodes)):
+            numbers('q', i + 1)
+        for p in nodes:
+            numbers('ddd', *p)
+    else:
+        text(str(len(nodes)))
+        for i, p in enumerate(nodes):
+            numbers('iddd', i + 1, *p)
+    if binary:
+        text('')
+    text('$EndNodes')
+    text('$Elements')
+    if version == '4.1':
+        numbers('qqqq', len(elements), len(elements), 1, len(elements))
+        for k, (kind, _, vertices) in enumerate(elements):
+            numbers('iiiq', dimension[kind], k + 1, kind, 1)
+            numbers('q' * (1 + len(vertices)), k + 1, *vertices)
+    else:
+        text(str(len(elements)))
+        for k, (kind, physical, vertices) in enumerate(elements):
+            if binary:
+                numbers('iii', kind, 1, 2)
+                numbers('iii' + 'i' * len(vertices), k + 1, physical, 1, *vertices)
+            else:
+                numbers('iiiii' + 'i' * len(vertices),
+                        k + 1, kind, 2, physical, 1, *vertices)
+    if binary:
+        text('')
+    text('$EndElements')
+    with open(name, 'wb') as f:
+        f.write(out)
+
+
+SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+EDGES = [(LINE, 1, (4, 1)), (LINE, 2, (2, 3)), (LINE, 3, (1, 2)), (LINE, 4, (3, 4))]
+CELL = [(QUAD, 10, (1, 2, 3, 4))]
+CUBE = [(x, y, z) for z in (0, 1) for x, y, _ in SQUARE]
+FACES = [(QUAD, 4, (1, 2, 3, 4)), (QUAD, 5, (5, 6, 7, 8)), (QUAD, 1, (1, 2, 6, 5)),
+         (QUAD, 1, (2, 3, 7, 6)), (QUAD, 1, (3, 4, 8, 7)), (QUAD, 1, (4, 1, 5, 8))]
+
+
+def moved(points, *by):
+    return [tuple(a + b for a, b in zip(p, by)) for p in points]
+
+
+def renumbered(elements, offset, ids):
+    return [(kind, ids.get(i, i), tuple(offset + v for v in vertices))
+            for kind, i, vertices in elements]
+
+
+def make_meshes():
+    square = EDGES + CELL
+    write_mesh('square.msh', SQUARE, square)
+    named = [(1, 3, 'floor'), (1, 4, 'top plate'), (2, 10, 'body')]
+    for version in '2.2', '4.1':
+        for binary in False, True:
+            write_mesh('square-%s-%s.msh' % (version, 'binary' if binary else 'text'),
+                       SQUARE, square, named, version, binary)
+    for binary in False, True:
+        write_mesh('cube-%s.msh' % ('binary' if binary else 'text'), CUBE,
+                   FACES + [(HEX, 10, tuple(range(1, 9)))],
+                   [(2, 4, 'floor'), (2, 5, 'top')], '4.1', binary)
+    # Two blocks that have nothing, a vertex, or an edge in common.
+    other = {1: 6, 2: 7, 3: 8, 4: 9, 10: 11}
+    write_mesh('two.msh', SQUARE + moved(SQUARE, 2, 0, 0),
+               square + renumbered(square, 4, other))
+    write_mesh('two-held.msh', SQUARE + moved(SQUARE, 2, 0, 0),
+               square + renumbered(square, 4, {}))
+    write_mesh('vertex.msh', SQUARE + [(2, 1, 0), (2, 2, 0), (1, 2, 0)],
+               square + [(LINE, 5, (3, 5)), (QUAD, 11, (3, 5, 6, 7))])
+    hexahedron = FACES + [(HEX, 10, tuple(range(1, 9)))]
+    hinge = {9: 3, 12: 5, 13: 7, 16: 8}
+    upper = moved(CUBE, 1, 1, 0)
+    # Vertices 1 and 5 of the second cube are 3 and 7 of the first.
+    number = {1: 3, 5: 7}
+    points = list(CUBE)
+    for v in range(1, 9):
+        if v not in number:
+            points.append(upper[v - 1])
+            number[v] = len(points)
+    write_mesh('edge-3d.msh', points, hexahedron + [
+        (kind, {4: 14, 5: 15, 1: 11, 10: 20}[i], tuple(number[v] for v in vertices))
+        for kind, i, vertices in hexahedron])
+    # Cells.
+    write_mesh('folded.msh', [(0, 0, 0), (1, 0, 0), (.2, .2, 0), (0, 1, 0)], square)
+    write_mesh('bow-tie.msh', [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], square)
+    write_mesh('clockwise.msh', [(0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)],
+               [(LINE, 1, (1, 2)), (LINE, 2, (3, 4)), (LINE, 3, (4, 1)),
+                (LINE, 4, (2, 3))] + CELL)
+    write_mesh('repeated.msh', SQUARE, EDGES + [(QUAD, 10, (1, 2, 3, 3))])
+    write_mesh('flat.msh', [(i, 0, 0) for i in range(4)], square)
+    write_mesh('no-plane.msh', SQUARE[:2] + [(1, 1, .5), (0, 1, 0)], square)
+    write_mesh('not-a-number.msh', SQUARE[:2] + [(1, float('nan'), 0), (0, 1, 0)],
+               square)
+    write_mesh('triangles.msh', SQUARE,
+               EDGES + [(TRIANGLE, 10, (1, 2, 3)), (TRIANGLE, 10, (1, 3, 4))])
+    write_mesh('second-order.msh',
+               SQUARE + [(.5, 0, 0), (1, .5, 0), (.5, 1, 0), (0, .5, 0), (.5, .5, 0)],
+               [(LINE3, 3, (1, 2, 5)), (QUAD9, 10, tuple(range(1, 10)))])
+    write_mesh('lines.msh', SQUARE, EDGES)
+    write_mesh('overlap.msh', SQUARE + [(.5, 1.5, 0), (.4, 1.5, 0), (1.6, 1.6, 0)],
+               square + [(QUAD, 10, (4, 3, 7, 6)), (QUAD, 10, (4, 3, 5, 6))])
+    for name, vertices, cube in [
+            ('twisted', (1, 2, 3, 4, 7, 8, 5, 6), CUBE),
+            ('inverted', (5, 6, 7, 8, 1, 2, 3, 4), CUBE),
+            ('folded-3d', tuple(range(1, 9)), CUBE[:6] + [(.1, .1, .2)] + CUBE[7:])]:
+        write_mesh(name + '.msh', cube, FACES + [(HEX, 10, vertices)])
+    # Groups.
+    write_mesh('no-groups.msh', SQUARE, [(kind, 0, v) for kind, _, v in square])
+    write_mesh('two-groups.msh', SQUARE, square + [(LINE, 9, (1, 2))])
+    strip = [(x, y, 0) for y in (0, 1) for x in (0, 1, 2)]
+    long_edges = [(LINE, 3, (1, 2)), (LINE, 3, (2, 3)), (LINE, 4, (5, 4)),
+                  (LINE, 4, (6, 5))]
+    cells = [(QUAD, 1, (1, 2, 5, 4)), (QUAD, 2, (2, 3, 6, 5))]
+    write_mesh('interior.msh', strip, long_edges + [(LINE, 8, (2, 5))] + cells)
+    write_mesh('twice.msh', strip, long_edges + cells + [(QUAD, 7, (1, 2, 5, 4))])
+    # The two cells have vertices of their own in the middle.
+    write_mesh('crack.msh', strip + [(1, 0, 0), (1, 1, 0)],
+               [(LINE, 3, (1, 2)), (LINE, 3, (7, 3)), (LINE, 4, (5, 4)),
+                (LINE, 4, (6, 8)), (QUAD, 1, (1, 2, 5, 4)), (QUAD, 2, (7, 3, 6, 8))])
+    # A bottom of edges of 20 degrees.
+    arc = [(-1, .2, 0), (0, 0, 0), (1, .2, 0)]
+    top = [(-1, 1, 0), (0, 1, 0), (1, 1, 0)]
+    write_mesh('polygon.msh', arc + top, long_edges + cells)
+    # Files.
+    with open('square.msh', 'rb') as f:
+        good = f.read()
+    for name, content in [('text', b'This is no mesh.\n'), ('empty', b''),
+                          ('half', good[:len(good) // 2]),
+                          ('version', good.replace(b'2.2 0 8', b'4 0 8')),
+                          ('no-elements', good[:good.index(b'$Elements')]),
+                          ('huge', good.replace(b'$Nodes\n4', b'$Nodes\n99999999999')),
+                          ('no-node', good.replace(b'1 2 3 4', b'1 2 3 7')),
+                          ('letters', good.replace(b'1 2 3 4', b'1 2 x 4'))]:
+        with open(name + '.msh', 'wb') as f:
+            f.write(content)
+    with open('square-4.1-binary.msh', 'rb') as f:
+        binary = f.read()
+    with open('half-binary.msh', 'wb') as f:
+        f.write(binary[:2 * len(binary) // 3])
+
+
+def mesh(name, **overrides):
+    return dict({'Scene/Mesh file': name + '.msh'}, **overrides)
+
+
+D, T, P, N = ('Boundary conditions/Displacement', 'Boundary conditions/Traction',
+              'Boundary conditions/Pinned points', 'Contact/Contact normal')
+B = 'Boundary conditions/Body force'
+
+# (number in the list of findings that it belongs to, name, scene, overrides,
+#  what is expected, patterns)
+CASES = [
+    # 1. Parts that nothing holds.
+    (1, 'part that is not held', 'mesh', mesh('two'), 'error',
+     [r'part of the body in \(2, 0\) to \(3, 1\) .*physical id 11.* not held against '
+      r'a displacement in x direction and a displacement in y direction and a '
+      r'rotation around \(2.5, 0.5\)']),
+    (1, 'part that is not held, with a load', 'mesh',
+     mesh('two', **{B: '0, -0.01'}), 'error', ['its loads push it there']),
+    (1, 'part that only contact holds', 'mesh',
+     mesh('two-held', **{D: '4: 0.01, -0.01'}), 'good', []),
+    (1, 'parts joined in a vertex', 'mesh', mesh('vertex'), 'error',
+     [r'in \(1, 1\) to \(2, 2\)']),
+    (1, 'parts joined along an edge', 'mesh 3d', mesh('edge-3d'), 'error',
+     [r'in \(1, 1, 0\) to \(2, 2, 1\)']),
+    (1, 'nothing is held', 'moved', {D: ''}, 'error',
+     ['x direction and .*y direction and .*rotation|x direction']),
+    (1, 'nothing is held in one direction', 'moved', {D: '3: free, -0.01'}, 'error',
+     ['not held against a displacement in x direction']),
+    (1, 'free rotation', 'moved', {D: '', P: '(0, 0): 0, 0', 'Obstacle/Kind': 'none',
+                                   'Contact/Boundary id': '-1',
+                                   'Contact/Friction coefficient': '0'}, 'error',
+     [r'a rotation around \(0, 0\)']),
+    (1, 'free rotation around an axis', 'pressed 3d',
+     {D: '', P: '(0,0,0): 0, 0, 0; (0,0,1): 0, 0, 0', 'Obstacle/Kind': 'none', T: '',
+      'Contact/Boundary id': '-1', 'Contact/Friction coefficient': '0'}, 'error',
+     [r'a rotation around the axis through \(0, 0, .* in z direction']),
+    (1, 'load away from the obstacle', 'pressed', {T: '3: 0, 0.01'}, 'error',
+     ['y direction: its loads push it there']),
+    (1, 'no load towards the obstacle', 'pressed', {T: ''}, 'error',
+     ['not held against a displacement in y direction: neither']),
+    (1, 'load that tips the body over', 'pressed',
+     {D: '0: 0, free', T: '', B: '0, 0.02*(x-1.1)'}, 'good', []),
+    (1, 'load towards the obstacle', 'pressed', {}, 'good', []),
+    (1, 'weight on the obstacle', 'pressed', {T: '', B: '0, -0.01'}, 'good', []),
+    (1, 'load towards the obstacle, 3D', 'pressed 3d', {}, 'good', []),
+    (1, 'load past the obstacle, 3D', 'pressed 3d', {T: '5: 0, 0, 0.01'}, 'error',
+     ['z direction: its loads push it there']),
+    # 2. Normals.
+    (2, 'normals of a body on a slope', 'moved',
+     {'Obstacle/Normal': '0.26, -0.97', 'Obstacle/Point': '2, 0', N: 'body'}, 'warning',
+     ['off that of the obstacle', 'away from the obstacle, or inside']),
+    (2, 'normals of the obstacle there', 'moved',
+     {'Obstacle/Normal': '0.26, -0.97', 'Obstacle/Point': '2, 0'}, 'good', []),
+    # 4. Displacements that are not small.
+    (4, 'dragged far away', 'moved', {D: '3: 3, -0.01', 'Obstacle/Kind': 'rods',
+                                      'Obstacle/Centers': '1, -5',
+                                      'Obstacle/Radius': '5'}, 'warning',
+     ['the largest displacement is 3 ', 'away from the obstacle, or inside']),
+    (4, 'large displacement', 'moved', {D: '3: 1, -0.01'}, 'warning',
+     ['the largest displacement is 1 ']),
+    # 5. Meshes.
+    (5, 'folded cell', 'mesh', mesh('folded'), 'error',
+     [r'folded quadrilateral number 5 around \(0.3, 0.3\)']),
+    (5, 'bow tie', 'mesh', mesh('bow-tie'), 'error', ['folded quadrilateral']),
+    (5, 'folded cell, 3D', 'mesh 3d', mesh('folded-3d'), 'error',
+     ['folded hexahedron number 7']),
+    (5, 'twisted cell', 'mesh 3d', mesh('twisted'), 'error', ['twisted']),
+    (5, 'cell of one node twice', 'mesh', mesh('repeated'), 'error',
+     ['same node twice']),
+    (5, 'flat cell', 'mesh', mesh('flat'), 'error', ['flat']),
+    (5, 'clockwise cell', 'mesh', mesh('clockwise'), 'good', []),
+    (5, 'inverted cell', 'mesh 3d', mesh('inverted'), 'good', []),
+    (5, 'three cells at an edge', 'mesh', mesh('overlap'), 'error',
+     ['3 cells that share the edge']),
+    (5, 'triangles', 'mesh', mesh('triangles'), 'error',
+     ['has 2 triangles, but only quadrilaterals']),
+    (5, 'second order', 'mesh', mesh('second-order'), 'error',
+     ['Mesh.ElementOrder = 1']),
+    (5, 'lines only', 'mesh', mesh('lines'), 'error', ['has no quadrilaterals']),
+    (5, 'mesh of three dimensions', 'mesh', mesh('cube-text'), 'error',
+     ['give the scene to step-friction-3d']),
+    (5, 'mesh of two dimensions', 'mesh 3d', mesh('square'), 'error',
+     ['give the scene to step-friction-2d']),
+    (5, 'interior curve', 'mesh', mesh('interior'), 'good', []),
+    (5, 'interior curve that is used', 'mesh',
+     mesh('interior', **{T: '8: 0, 0'}), 'error', ['lie inside the body']),
+    (5, 'no groups', 'mesh', mesh('no-groups'), 'error',
+     ['names boundary id 4, but the mesh has only 0']),
+    (5, 'no groups, one boundary', 'mesh',
+     mesh('no-groups', **{D: '', P: '(0, 1): 0, -.01; (1, 1): 0, -.01',
+                          'Contact/Boundary id': '0'}), 'good', []),
+    (5, 'face in two groups', 'mesh', mesh('two-groups'), 'good', []),
+    (5, 'face in two groups that are used', 'mesh',
+     mesh('two-groups', **{T: '9: 0, 0'}), 'error', ['in the groups 3 and 9']),
+    (5, 'cell in two groups', 'mesh', mesh('twice'), 'good', []),
+    (5, 'names', 'mesh', mesh('square-2.2-text', **{
+        D: 'top plate: 0.01, -0.01', 'Contact/Boundary id': 'floor'}), 'good', []),
+    (5, 'unknown name', 'mesh',
+     mesh('square-2.2-text', **{'Contact/Boundary id': 'flor'}), 'error',
+     [r"which has 'floor' \(3\), 'top plate' \(4\)"]),
+    (5, 'name without a mesh file', 'moved', {'Contact/Boundary id': 'floor'}, 'error',
+     ["'floor' is no boundary id"]),
+    (5, 'no mesh at all', 'mesh', mesh('text'), 'error', ["not in Gmsh's format"]),
+    (5, 'empty file', 'mesh', mesh('empty'), 'error', ['nothing in the mesh file']),
+    (5, 'missing file', 'mesh', mesh('missing'), 'error', ['cannot open']),
+    (5, 'half a file', 'mesh', mesh('half'), 'error', ['ends in the middle|has no sec']),
+    (5, 'half a binary file', 'mesh', mesh('half-binary'), 'error',
+     ['ends in the middle|has no sec']),
+    (5, 'another version', 'mesh', mesh('version'), 'error', ['version 4.0']),
+    (5, 'no elements', 'mesh', mesh('no-elements'), 'error', ['no section .Elements']),
+    (5, 'a number that is too large', 'mesh', mesh('huge'), 'error', ['there is more']),
+    (5, 'a node that there is not', 'mesh', mesh('no-node'), 'error',
+     ['number 7']),
+    (5, 'letters', 'mesh', mesh('letters'), 'error', ['something else than a number']),
+    (5, 'no number', 'mesh', mesh('not-a-number'), 'error', ['no number']),
+    # 7. Entries that nothing uses.
+    (7, 'mesh file without its geometry', 'moved', {'Scene/Mesh file': 'square.msh'},
+     'error', ["set that to 'mesh file'"]),
+    (7, 'entries that nothing uses', 'moved',
+     {'Scene/Radius': '3', 'Obstacle/Radius': '3', 'Contact/Friction bound': '1',
+      'Refinement/Marking': '.3', 'Output/Format': 'hdf5', 'Output/Fields': 'false'}, 'warning',
+     ["'Scene/Radius' is not used", "'Obstacle/Radius' is not used",
+      "'Contact/Friction bound' is not used", "'Refinement/Marking' is not used",
+      "'Output/Format' is not used"]),
+    (7, 'coefficient without its law', 'moved', {'Contact/Friction law': 'none'},
+     'warning', ["'Contact/Friction coefficient' is not used"]),
+    (7, 'coefficient in an expression', 'moved',
+     {'Contact/Friction law': 'Tresca', 'Contact/Friction bound': '0.01*F'}, 'good',
+     []),
+    # 9. Loads.
+    (9, 'not a number in a load', 'pressed', {B: 'sqrt(x-1), 0'}, 'error',
+     [r"'sqrt\(x-1\), 0' is not a number at \(0"]),
+    (9, 'division by zero in a traction', 'pressed', {T: '3: 0, -1/(y-1)'}, 'error',
+     [r'inf at \(.*, 1\)']),
+    (9, 'division by zero in a displacement', 'moved', {D: '3: 0.01/x, -0.01'}, 'error',
+     [r'inf at \(0, 1\)']),
+    (9, 'division by zero in a bound', 'moved',
+     {'Contact/Friction law': 'Tresca', 'Contact/Friction bound': 'F/x'}, 'error',
+     [r"'F/x' is inf at \(0, 0\)"]),
+    (9, 'negative bound', 'moved',
+     {'Contact/Friction law': 'Tresca', 'Contact/Friction bound': '-F'}, 'error',
+     ['negative']),
+    (9, 'a load without measure', 'pressed', {T: '3: 0, -1e200'}, 'error',
+     ['up to 1e30']),
+    (9, 'not a number in three dimensions', 'pressed 3d', {B: '0, 0, log(-z)'},
+     'error', ['not a number']),
+    # 10. No contact.
+    (10, 'normal of the wrong sign', 'moved', {'Obstacle/Normal': '0, 1'}, 'warning',
+     ['faces the obstacle', 'no node is in contact']),
+    (10, 'rod inside the body', 'moved',
+     {'Obstacle/Kind': 'rods', 'Obstacle/Centers': '1, .5', 'Obstacle/Radius': '.1'},
+     'warning', ['faces the obstacle', 'no node is in contact']),
+    (10, 'contact boundary that is prescribed', 'moved',
+     {'Contact/Boundary id': '3'}, 'warning',
+     ['faces the obstacle', 'no node is in contact']),
+    (10, 'body in its obstacle', 'moved', {'Obstacle/Point': '0, 0.02'}, 'warning',
+     ['inside the obstacle before']),
+    (10, 'no obstacle', 'moved', {'Obstacle/Kind': 'none'}, 'warning',
+     ['there is no obstacle']),
+    (10, 'polygon', 'mesh', mesh('polygon', **{'Refinement/Initial refinements': '1'}),
+     'warning', ['edges of up to 22.6 degrees']),
+    # 11. All the rest.
+    (11, 'one id twice', 'moved', {D: '3: 0.01, -0.01; 3: 0, 0'}, 'error',
+     ['names boundary id 3 twice']),
+    (11, 'one id twice in tractions', 'pressed', {T: '3: 0, -0.01; 3: 0, -0.02'},
+     'error', ['names boundary id 3 twice']),
+    (11, 'one point twice', 'pressed', {P: '(2, 0): 0.1, free; (2, 0): 0.2, free'},
+     'error', ['twice']),
+    (11, 'pin against a boundary', 'pressed', {P: '(0, 0): 0.1, free'}, 'error',
+     ['contradict each other']),
+    (11, 'z that varies', 'mesh', mesh('no-plane'), 'error', ['no plane z = constant']),
+    (11, 'crack', 'mesh', mesh('crack'), 'warning', [r'at \(1, 0.5\)']),
+    (11, 'too many refinements', 'moved', {'Refinement/Initial refinements': '15'},
+     'error', ['degrees of freedom']),
+    (11, 'too many cells', 'moved', {'Scene/Subdivisions': '1000000, 100000'}, 'error',
+     ['degrees of freedom']),
+    (11, 'too deep a mesh', 'pressed 3d', {'Refinement/Levels': '25',
+                                           'Refinement/Initial refinements': '15'},
+     'error', ['degrees of freedom|refined more than']),
+    (11, 'sizes without measure', 'moved', {'Scene/Size': '1e-300, 1e-300'}, 'error',
+     ['1e-30']),
+    (11, 'stiffness without measure', 'moved', {"Material/Young's modulus": '1e-308'},
+     'error', ['1e-30']),
+    (11, 'infinite stiffness', 'moved', {"Material/Young's modulus": '1e308'}, 'error',
+     ['1e30']),
+    (11, 'radius without measure', 'moved',
+     {'Obstacle/Kind': 'rods', 'Obstacle/Centers': '1, -1',
+      'Obstacle/Radius': '1e-200'}, 'error', ['1e-30']),
+    (11, 'definition that is broken', 'moved', {'Scene/Definitions': 'r = sqrt(x'},
+     'error', ["'Scene/Definitions' of 'r'"]),
+    (11, 'definition that is there twice', 'moved',
+     {'Scene/Definitions': 'r = x; r = y'}, 'error', ['says twice what .r. is']),
+    (11, 'constant that is there twice', 'moved', {'Scene/Constants': 'a = 1; a = 2'},
+     'error', ['says twice what .a. is']),
+    (11, 'definition with the name of a constant', 'moved',
+     {'Scene/Constants': 'a = 1', 'Scene/Definitions': 'a = x'}, 'error',
+     ['constant already']),
+    (11, 'several values', 'moved', {'Scene/Radius': '1, 2'}, 'error', ['number']),
+    (11, 'several values in an expression', 'moved',
+     {'Contact/Friction law': 'Tresca', 'Contact/Friction bound': '1, 2'}, 'error',
+     ['several values']),
+    (11, 'assignment', 'moved', {D: '3: x=0.01, -0.01'}, 'error', ["has a '=' in it"]),
+    (11, 'tolerance below rounding', 'moved', {'Solver/Inner tolerance': '1e-25'},
+     'good', []),
+    (11, 'negative id', 'moved', {'Contact/Boundary id': '-7'}, 'error',
+     ['no boundary id']),
+]
+
+
+class Runner:
+    def __init__(self, programs):
+        self.programs = programs
+        self.failures = 0
+
+    def run(self, scene, overrides, *options):
+        dimension, entries = SCENES[scene]
+        all_entries = dict(entries)
+        all_entries.update({'Refinement/Initial refinements': '2', 'Output/Times':
+                            'false', 'Output/Directory': 'results'})
+        if 'Scene/Mesh file' in overrides and scene.startswith('mesh'):
+            all_entries['Refinement/Initial refinements'] = '1'
+        all_entries.update(overrides)
+        with open('scene.prm', 'w') as f:
+            for path, value in all_entries.items():
+                section, name = path.split('/', 1)
+                f.write('subsection %s\n  set %s = %s\nend\n' % (section, name, value))
+        shutil.rmtree('results', ignore_errors=True)
+        return subprocess.run([self.programs[dimension], 'scene.prm', *options],
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              timeout=120, universal_newlines=True)
+
+    def verdict(self, name, problems, result):
+        print('%-8s%s' % ('FAILED' if problems else 'ok', name))
+        if problems:
+            self.failures += 1
+            for line in problems + [result.stdout, result.stderr]:
+                print('        ' + line.rstrip().replace('\n', '\n        '))
+
+    def check(self, case):
+        number, name, scene, overrides, expected, patterns = case
+        result = self.run(scene, overrides)
+        problems = []
+        if result.returncode != (2 if expected == 'error' else 0):
+            problems.append('exit status %d' % result.returncode)
+        if expected == 'error':
+            lines = result.stderr.splitlines()
+            if len(lines) != 1 or not re.search(r'[.?]$', lines[0]):
+                problems.append('this is no single sentence')
+            if len(result.stderr) > 700:
+                problems.append('this is too long')
+            for pattern in patterns:
+                if not re.search(pattern, result.stderr):
+                    problems.append('not found: ' + pattern)
+            if [l for l in result.stdout.splitlines() if not l.startswith('Warning:')]:
+                problems.append('something on standard output')
+            left = [os.path.join(d, f) for d, _, fs in os.walk('results') for f in fs]
+            if left:
+                problems.append('files left: ' + ', '.join(left))
+        else:
+            warnings = [l for l in result.stdout.splitlines()
+                        if l.startswith('Warning:')]
+            for pattern in patterns:
+                if sum(bool(re.search(pattern, w)) for w in warnings) != 1:
+                    problems.append('not found once: ' + pattern)
+            if len(warnings) != len(patterns):
+                problems.append('%d warnings instead of %d'
+                                % (len(warnings), len(patterns)))
+            if result.stderr:
+                problems.append('something on standard error')
+        self.verdict('%d: %s' % (number, name), problems, result)
+
+    def check_same_tables(self):
+        """The same mesh in four formats, and its groups by name."""
+        names = {D: 'top plate: 0.01, -0.01', 'Contact/Boundary id': 'floor'}
+        expected = self.run('mesh', mesh('square')).stdout
+        for file in ('square-2.2-text', 'square-2.2-binary', 'square-4.1-text',
+                     'square-4.1-binary'):
+            result = self.run('mesh', mesh(file, **names))
+            self.verdict('5: ' + file, [] if result.stdout == expected and
+                         result.returncode == 0 else ['another table'], result)
+        tables = [self.run('mesh 3d', mesh(file)) for file in ('cube-text',
+                                                              'cube-binary')]
+        self.verdict('5: text and binary in 3D',
+                     [] if tables[0].stdout == tables[1].stdout and
+                     tables[0].returncode == 0 else ['another table'], tables[1])
+
+    def check_slope(self):
+        """Coulomb's law in total forces: a block whose lower edge slides down a slope
+        of 15 degrees gets as much friction as the coefficient allows."""
+        angle = math.radians(15)
+        normal = (math.sin(angle), 0, -math.cos(angle))
+        down = (-math.cos(angle), 0, -math.sin(angle))
+        shift = ', '.join('%.9g' % (.1 * t + .02 * n) for t, n in zip(down, normal))
+        for kind, obeys in ('obstacle', True), ('body', False):
+            result = self.run('pressed 3d', {
+                D: '5: ' + shift, T: '', 'Obstacle/Point': '1, 0, 0',
+                'Obstacle/Normal': ', '.join('%.15g' % n for n in normal), N: kind})
+            force = re.search(r'on the body \(([^)]*)\)', result.stdout)
+            force = [float(f) for f in force.group(1).split(',')]
+            pressure = -sum(f * n for f, n in zip(force, normal))
+            friction = math.sqrt(sum(f * f for f in force) - pressure ** 2)
+            ratio = friction / pressure
+            self.verdict('2: forces on a slope, normals of the %s' % kind,
+                         [] if (abs(ratio - .3) < 1e-3) == obeys else
+                         ['their ratio is %.4f' % ratio], result)
+
+    def check_check(self):
+        result = self.run('moved', {}, '--check')
+        self.verdict('--check solves and writes nothing',
+                     ([] if result.returncode == 0 and 'energy' not in result.stdout
+                      else ['it has done something else']) +
+                     (['something was written'] if os.path.exists('results') else []),
+                     result)
+        result = self.run('moved', {'Obstacle/Point': '0, 0.02'}, '--check')
+        self.verdict('--check warns', [] if result.returncode == 0 and
+                     'inside the obstacle' in result.stdout else ['no warning'], result)
+        result = self.run('mesh', mesh('two'), '--check')
+        self.verdict('--check finds errors', [] if result.returncode == 2 else
+                     ['exit status'], result)
+
+
+def main():
+    runner = Runner({2: os.path.abspath(sys.argv[1]), 3: os.path.abspath(sys.argv[2])})
+    work = tempfile.mkdtemp()
+    try:
+        os.chdir(work)
+        make_meshes()
+        for case in CASES:
+            runner.check(case)
+        runner.check_same_tables()
+        runner.check_slope()
+        runner.check_check()
+    finally:
+        os.chdir('/')
+        shutil.rmtree(work)
+    print('%d failed' % runner.failures)
+    return 1 if runner.failures else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,248 @@
+// Whether a body is held.
+//
+// - Parts of a body: cells that share a face belong together, those that share
+// a
+//   vertex or an edge only do not.
+// - held_by_contact() on random problems in one to three unknown motions. If it
+//   finds a motion, nothing stops it, and loads do work on it; if it finds
+//   none, some pressures, of as many nodes as there are motions, balance the
+//   loads, which is tried for all sets of nodes. Both cannot be.
+// - Bodies that are held by a boundary, by two planes of symmetry, by three
+//   components in two vertices, and with one of these less.
+
+#include <common/input_error.h>
+#include <common/scene/rigid_motions.h>
+
+#include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_tools.h>
+
+#include <Eigen/QR>
+
+#include <random>
+
+#include <tests/support/check.h>
+
+using namespace Friction;
+using namespace Tests;
+
+namespace
+{
+  template <int dim>
+  unsigned int
+  n_parts(const Triangulation<dim> &mesh)
+  {
+    std::vector<unsigned int> parts;
+    return find_parts(mesh, parts);
+  }
+
+
+
+  // A cube, and another one that is shifted by so many edge lengths.
+  template <int dim>
+  unsigned int
+  n_parts_of_two(const Point<dim> &shift)
+  {
+    Triangulation<dim> one, other, both;
+    GridGenerator::hyper_cube(one);
+    GridGenerator::hyper_cube(other);
+    GridTools::shift(shift, other);
+    GridGenerator::merge_triangulations(one, other, both);
+    return n_parts(both);
+  }
+
+
+
+  void
+  test_parts()
+  {
+    Triangulation<2> mesh;
+    GridGenerator::hyper_L(mesh);
+    mesh.refine_global(2);
+    check(n_parts(mesh) == 1, "one part");
+    check(n_parts_of_two(Point<2>(1., 0.)) == 1, "joined by an edge, 2D");
+    check(n_parts_of_two(Point<2>(1., 1.)) == 2, "joined by a vertex, 2D");
+    check(n_parts_of_two(Point<2>(2., 0.)) == 2, "apart, 2D");
+    check(n_parts_of_two(Point<3>(0., 0., 1.)) == 1, "joined by a face, 3D");
+    check(n_parts_of_two(Point<3>(0., 1., 1.)) == 2, "joined by an edge, 3D");
+    check(n_parts_of_two(Point<3>(1., 1., 1.)) == 2, "joined by a vertex, 3D");
+  }
+
+
+
+  // Whether pressures of some nodes, at most as many as there are motions,
+  // balance the loads: by trying all of them.
+  bool
+  some_pressures_balance(const Eigen::VectorXd     &loads,
+                         const Eigen::MatrixXd     &contact,
+                         std::vector<unsigned int> &nodes,
+                         const unsigned int         first)
+  {
+    if (!nodes.empty())
+      {
+        Eigen::MatrixXd columns(contact.rows(), nodes.size());
+        for (unsigned int i = 0; i < nodes.size(); ++i)
+          columns.col(i) = contact.col(nodes[i]);
+        const Eigen::VectorXd pressures =
+          columns.colPivHouseholderQr().solve(loads);
+        if (pressures.minCoeff() >= -1e-9 &&
+            (columns * pressures - loads).norm() < 1e-9 * loads.norm())
+          return true;
+      }
+    if (nodes.size() == contact.rows())
+      return false;
+    for (unsigned int p = first; p < contact.cols(); ++p)
+      {
+        nodes.push_back(p);
+        const bool found = some_pressures_balance(loads, contact, nodes, p + 1);
+        nodes.pop_back();
+        if (found)
+          return true;
+      }
+    return false;
+  }
+
+
+
+  void
+  test_contact()
+  {
+    std::mt19937 generator(7);
+    const auto   random = [&]() {
+      return 2. * generator() / generator.max() - 1.;
+    };
+    unsigned int n_held = 0, n_driven = 0, n_wrong = 0;
+    for (unsigned int problem = 0; problem < 3000; ++problem)
+      {
+        const unsigned int n_motions = 1 + problem % 3;
+        const unsigned int n_nodes   = generator() % 7;
+        Eigen::VectorXd    loads(n_motions);
+        Eigen::MatrixXd    contact(n_motions, n_nodes);
+        for (unsigned int i = 0; i < n_motions; ++i)
+          {
+            loads[i] = random();
+            for (unsigned int p = 0; p < n_nodes; ++p)
+              contact(i, p) = random();
+          }
+        const Holding             holding = held_by_contact(loads, contact);
+        std::vector<unsigned int> nodes;
+        const bool balanced = some_pressures_balance(loads, contact, nodes, 0);
+        if (holding.is_driven)
+          {
+            ++n_driven;
+            const bool nothing_stops = n_nodes == 0 ||
+              (contact.transpose() * holding.motion).maxCoeff() < 1e-6;
+            n_wrong +=
+              balanced || !nothing_stops || !(holding.motion.dot(loads) > 0.);
+          }
+        else
+          {
+            n_held += holding.motion.size() == 0;
+            n_wrong += !balanced;
+          }
+      }
+    check(n_wrong == 0, "held or not, as all sets of nodes say");
+    check(n_held > 300 && n_driven > 300, "both of them often");
+
+    // A block on a plane without friction: from its two lower corners. It may
+    // move in x direction, be lifted, and be turned.
+    Eigen::MatrixXd corners(2, 2);
+    corners << 1., 1., -.5, .5;
+    Eigen::VectorXd load(2);
+    load << 1., 0.;
+    check(held_by_contact(load, corners).motion.size() == 0,
+          "a block on its two corners is held by its weight");
+    load << 1., .4;
+    check(held_by_contact(load, corners).motion.size() == 0,
+          "and also if that is nearer to one of them");
+    load << 1., .5;
+    check(held_by_contact(load, corners).motion.size() == 2 &&
+            !held_by_contact(load, corners).is_driven,
+          "above a corner it can be turned without work");
+    load << 1., .6;
+    check(held_by_contact(load, corners).is_driven, "and beyond it tips over");
+    load << 0., 0.;
+    check(held_by_contact(load, corners).motion.size() == 2,
+          "without any weight it can be lifted");
+    Eigen::MatrixXd walls(1, 2);
+    walls << 1., -1.;
+    check(held_by_contact(Eigen::VectorXd::Zero(1), walls).motion.size() == 0,
+          "between two walls nothing moves, without any load");
+  }
+
+
+
+  // What the scene has to say of its mesh, up to a colon that ends the motions.
+  template <int dim>
+  std::string
+  verdict(const Parameters &p)
+  {
+    Triangulation<dim> mesh;
+    try
+      {
+        Scene<dim>(p).make_coarse_mesh(mesh);
+      }
+    catch (const InputError &error)
+      {
+        const std::string text  = error.what();
+        const std::string begin = "is not held against ";
+        const auto        first = text.find(begin);
+        return first == std::string::npos
+          ? text
+          : text.substr(first + begin.size(),
+                        text.find(": n", first) - first - begin.size());
+      }
+    return "held";
+  }
+
+
+
+  void
+  test_bodies()
+  {
+    Parameters p;
+    p.scene.size         = {2., 1.};
+    p.scene.subdivisions = {2, 1};
+    auto &displacement   = p.boundary_conditions.displacement;
+    auto &pins           = p.boundary_conditions.pinned_points;
+    displacement         = {{"3", {"0", "0"}}};
+    check(verdict<2>(p) == "held", "held by a boundary");
+    displacement = {{"0", {"0", "free"}}, {"2", {"free", "0"}}};
+    check(verdict<2>(p) == "held", "held by two planes of symmetry");
+    displacement = {{"0", {"0", "free"}}};
+    check(verdict<2>(p) == "a displacement in y direction",
+          "one of them leaves a displacement");
+    displacement.clear();
+    pins = {{"(0, 0)", {"0", "0"}}, {"(2, 0)", {"free", "0"}}};
+    check(verdict<2>(p) == "held", "held by three components of two vertices");
+    pins.pop_back();
+    check(verdict<2>(p) == "a rotation around (0, 0)", "one vertex is a hinge");
+    pins = {{"(0, 0)", {"0", "0"}}, {"(2, 0)", {"0", "free"}}};
+    check(verdict<2>(p) == "a rotation around (0, 0)",
+          "two that are held along their line, too");
+    pins.clear();
+    check(verdict<2>(p) ==
+            "a displacement in x direction and a displacement in y direction "
+            "and a rotation around (1, 0.5)",
+          "nothing holds it");
+
+    p.scene.size         = {2., 1., 1.};
+    p.scene.subdivisions = {2, 1, 1};
+    pins = {{"(0, 0, 0)", {"0", "0", "0"}}, {"(2, 0, 0)", {"free", "0", "0"}}};
+    check(verdict<3>(p) ==
+            "a rotation around the axis through (0, 0, 0) in x direction",
+          "two vertices are an axis");
+    pins.push_back({"(0, 1, 0)", {"free", "free", "0"}});
+    check(verdict<3>(p) == "held", "and three vertices hold");
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *argv[])
+{
+  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  test_parts();
+  test_contact();
+  test_bodies();
+}
