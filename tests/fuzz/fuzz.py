@@ -1,0 +1,347 @@
+"""Scenes, meshes, checkpoints and arguments that are changed at random, given to the
+programs: whatever they are, a run has to end with a result or with a sentence.
+
+Usage: fuzz.py PROGRAM_2D PROGRAM_3D SCENES_2D SCENES_3D FOUND
+         [--seconds N] [--seed N] [--processes MPIEXEC FLAG N] [--verify SCRIPT]
+
+Each input is made from a number, its seed, which is printed with what is found and
+with which it can be made again (--seed N --seconds 0 tries that one only). An input
+is a finding if the run
+- ends by a signal, or with an exit status of its own that says "an error of the
+  program" (3), or does not end,
+- prints a stack trace, or a report of a sanitizer,
+- refuses the input without a message, or with one of more than three lines or a
+  thousand characters,
+- prints "nan" or "inf" in the table of a run with exit status 0,
+- leaves files that are not finished,
+- says that it has solved the problem, and the certificate is not confirmed by
+  SCRIPT, a second program that reads what was written.
+
+The inputs of findings are saved in the folder FOUND, one folder for each. Exit status
+1 if there were any.
+"""
+import argparse
+import os
+import random
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+TIMEOUT = 60
+# Small enough to be many.
+LIMITS = ['Refinement/Levels=1', 'Refinement/Maximum dofs=2000', 'Output/Times=false',
+          'Solver/Total cycles=300', 'Solver/Maximum cycles=60',
+          'Solver/Maximum outer iterations=10', 'Output/Directory=results']
+
+NUMBERS = ['0', '-0', '1', '-1', '2', '.5', '1e-8', '1e8', '-1e8', '1e-30', '1e30',
+           '1e300', '1e-300', '-1e-300', 'nan', 'inf', '-inf', '1e999', '0x10', '1/0',
+           '1,2', '', ' ', '1e', '--1', '3.0.1', '99999999999999999999', '00', '1 2']
+EXPRESSIONS = ['x', 'y', 'z', 'x*y', '1/x', 'sqrt(x)', 'log(-x)', 'x^1000', 'sin(x',
+               'x)', 'x=1', 'if(x>0,1,0)', 'free', 'E', 'nu', 'pi', 'q', '1e', 'x,y',
+               '(x,y)', 'x;y', '-', '*', 'rand(1)', 'x>y', '1e300*x', '"x"', '#', '\\']
+PIECES = ['subsection', 'end', 'set', '=', ';', ',', ':', '(', ')', '#', '\\\n', '\0',
+          '\xff', '\u00e9', '$', '%s', '%n', '../', "'", '"', '\t', '\r\n', 'true',
+          'false', 'yes', 'automatic', '-1']
+
+
+class Input:
+    """One input: made by its seed, in the present folder."""
+
+    def __init__(self, seed, scenes, meshes):
+        self.random = random.Random(seed)
+        self.scenes = scenes
+        self.meshes = meshes
+        self.dimension = self.random.choice([2, 2, 3])
+        self.options = []
+        self.restarts = False
+        path = self.random.choice(self.scenes[self.dimension])
+        self.scene = read(path)
+        # Meshes are found beside the scene.
+        for mesh in self.meshes[self.dimension]:
+            shutil.copy(mesh, '.')
+        kind = self.random.choice(['values', 'values', 'values', 'text', 'bytes', 'mesh',
+                                   'arguments', 'checkpoint', 'entries'])
+        getattr(self, 'change_' + kind)()
+        write('scene.prm', self.scene)
+
+    def number(self):
+        r = self.random
+        return r.choice([r.choice(NUMBERS), '%g' % r.gauss(0, 1),
+                         '%g' % (10. ** r.uniform(-12, 12)), str(r.randint(-3, 9))])
+
+    def value(self, old):
+        """Another value in place of an old one, often nearly as it was."""
+        r = self.random
+        parts = re.split(r'([,;: ]+)', old)
+        if len(parts) > 1 and r.random() < .6:
+            i = r.randrange(0, len(parts), 2)
+            parts[i] = self.value(parts[i])
+            return ''.join(parts)
+        return r.choice([self.number, lambda: r.choice(EXPRESSIONS),
+                         lambda: old + r.choice(PIECES), lambda: r.choice(PIECES) + old,
+                         lambda: '-' + old, lambda: old * 2, lambda: '', self.number])()
+
+    def entries(self):
+        return [m for m in re.finditer(r'^( *set [^=\n]*=)([^\n]*)$',
+                                       self.scene.decode('utf-8', 'replace'), re.M)]
+
+    def change_values(self, times=None):
+        for _ in range(times or self.random.choice([1, 1, 2, 4])):
+            entries = self.entries()
+            if not entries:
+                return
+            m = self.random.choice(entries)
+            text = self.scene.decode('utf-8', 'replace')
+            self.scene = (text[:m.start(2)] + ' ' + self.value(m.group(2).strip()) +
+                          text[m.end(2):]).encode('utf-8', 'replace')
+
+    def change_entries(self):
+        """Entries of other scenes are put in the place of this one's."""
+        r = self.random
+        other = read(r.choice(self.scenes[self.dimension])).decode()
+        sections = re.findall(r'^subsection .*?^end$', other, re.M | re.S)
+        self.scene += ('\n' + '\n'.join(r.sample(sections, min(len(sections),
+                                                r.randint(1, 3)))) + '\n').encode()
+        if r.random() < .3:
+            self.change_values(1)
+
+    def change_text(self):
+        r = self.random
+        lines = self.scene.split(b'\n')
+        for _ in range(r.choice([1, 1, 3])):
+            i = r.randrange(len(lines))
+            action = r.randrange(5)
+            if action == 0:
+                del lines[i]
+            elif action == 1:
+                lines.insert(i, lines[r.randrange(len(lines))])
+            elif action == 2:
+                lines[i] = lines[i][:r.randrange(len(lines[i]) + 1)]
+            elif action == 3:
+                piece = r.choice(PIECES).encode('utf-8', 'replace')
+                k = r.randrange(len(lines[i]) + 1)
+                lines[i] = lines[i][:k] + piece + lines[i][k:]
+            else:
+                lines[i] = lines[i] * r.choice([2, 1000])
+            lines = lines or [b'']
+        self.scene = b'\n'.join(lines)
+
+    def change_bytes(self, data=None):
+        r = self.random
+        changed = bytearray(self.scene if data is None else data)
+        for _ in range(r.choice([1, 2, 8])):
+            if not changed:
+                break
+            k = r.randrange(len(changed))
+            action = r.randrange(4)
+            if action == 0:
+                changed[k] ^= 1 << r.randrange(8)
+            elif action == 1:
+                changed[k] = r.randrange(256)
+            elif action == 2:
+                del changed[k:k + r.choice([1, 10, len(changed)])]
+            else:
+                changed[k:k] = bytes(r.randrange(256)
+                                     for _ in range(r.choice([1, 4, 50])))
+        if data is None:
+            self.scene = bytes(changed)
+        return bytes(changed)
+
+    def change_mesh(self):
+        r = self.random
+        name = r.choice(self.meshes[self.dimension])
+        data = read(name)
+        name = os.path.basename(name)
+        self.scene = re.sub(rb'set Mesh file *=.*', b'set Mesh file = ' + name.encode(),
+                            self.scene)
+        if b'Mesh file' not in self.scene:
+            self.scene += ('\nsubsection Scene\n  set Geometry = mesh file\n  set Mesh '
+                           'file = %s\nend\n' % name).encode()
+        if r.random() < .4:
+            write(name, self.change_bytes(data))
+            return
+        # Numbers in the text: indices, tags, coordinates.
+        words = re.split(rb'(\s+)', data)
+        for _ in range(r.choice([1, 1, 2, 5])):
+            k = r.randrange(0, len(words), 2)
+            other = words[r.randrange(0, len(words), 2)]
+            words[k] = r.choice([self.number().encode(), other, other, b'', words[k] +
+                                 b'0'])
+        write(name, b''.join(words))
+
+    def change_arguments(self):
+        r = self.random
+        entries = self.entries()
+        for _ in range(r.choice([1, 2, 3])):
+            m = r.choice(entries)
+            name = m.group(1).replace('set', '').replace('=', '').strip()
+            section = r.choice(['Scene', 'Obstacle', 'Contact', 'Material', 'Solver',
+                                'Refinement', 'Output', 'Boundary conditions', ''])
+            argument = '%s/%s=%s' % (section, name, self.value(m.group(2).strip()))
+            self.options.append(r.choice([
+                argument, argument, argument, '--check', '--restart', '--foo', '', '-h',
+                argument[:r.randrange(len(argument) + 1)], 'x' * 5000]))
+        self.options = [o.replace('\0', '') for o in self.options]
+
+    def change_checkpoint(self):
+        self.restarts = True
+
+
+def read(path):
+    with open(path, 'rb') as f:
+        return f.read()
+
+
+def write(path, data):
+    with open(path, 'wb') as f:
+        f.write(data)
+
+
+class Fuzzer:
+    def __init__(self, arguments):
+        self.a = arguments
+        self.programs = {2: os.path.abspath(arguments.program_2d),
+                         3: os.path.abspath(arguments.program_3d)}
+        folders = {2: os.path.abspath(arguments.scenes_2d),
+                   3: os.path.abspath(arguments.scenes_3d)}
+
+        def files(dimension, ending):
+            found = []
+            for folder in (folders[dimension], os.path.join(
+                    os.path.dirname(os.path.abspath(__file__)), 'corpus-%dd' %
+                    dimension)):
+                if os.path.isdir(folder):
+                    found += [os.path.join(folder, f) for f in os.listdir(folder)
+                              if f.endswith(ending)]
+            return sorted(found)
+        self.scenes = {d: files(d, '.prm') for d in (2, 3)}
+        self.meshes = {d: files(d, '.msh') for d in (2, 3)}
+        self.found = os.path.abspath(arguments.found)
+        self.n_inputs = 0
+        self.findings = {}
+        self.outcomes = {}
+
+    def run(self, dimension, arguments):
+        command = [self.programs[dimension]] + arguments
+        if self.a.processes:
+            launcher, flag, n = self.a.processes
+            command = [launcher, flag, n] + command
+        try:
+            done = subprocess.run(command, stdout=subprocess.PIPE,
+                                  stderr=subprocess.PIPE, timeout=TIMEOUT)
+            return (done.returncode, done.stdout.decode('utf-8', 'replace'),
+                    done.stderr.decode('utf-8', 'replace'))
+        except subprocess.TimeoutExpired:
+            return (None, '', '')
+        except ValueError as error:
+            return (2, '', 'x: %s.' % error)  # no such argument can be given
+
+    def problems(self, status, out, err):
+        text = out + err
+        if status is None:
+            return 'does not end'
+        if status < 0 or status > 3:
+            return 'signal or status %d' % status
+        if re.search(r'Stacktrace|AddressSanitizer|runtime error:|terminate called',
+                     text):
+            return 'stack trace or sanitizer'
+        if status == 3:
+            return 'error of the program'
+        if status == 2:
+            lines = [l for l in err.splitlines() if l.strip()]
+            if self.a.processes:
+                # The launcher has something to say, too.
+                lines = [l for l in lines if l.startswith('step-friction')]
+            usage = any(l.startswith('Usage') for l in lines)
+            if not lines:
+                return 'no message'
+            if not usage and (len(lines) > 3 or sum(map(len, lines)) > 1000):
+                return 'long message'
+            if not re.search(r'[.?)]$', lines[-1].rstrip()) and not usage:
+                return 'no sentence'
+        if status == 0 and re.search(r'\b-?(nan|inf)\b',
+                                     ' '.join(l for l in out.splitlines()
+                                              if re.match(r' *\d', l))):
+            return 'nan in a table'
+        if any('.part' in f for _, _, fs in os.walk('results') for f in fs):
+            return 'half a file'
+        return None
+
+    def try_seed(self, seed):
+        work = tempfile.mkdtemp()
+        here = os.getcwd()
+        try:
+            os.chdir(work)
+            try:
+                case = Input(seed, self.scenes, self.meshes)
+            except (UnicodeError, IndexError):
+                return
+            self.n_inputs += 1
+            limits = list(LIMITS)
+            verify = (self.a.verify and not self.a.processes and
+                      random.Random(seed).random() < .5)
+            if verify:
+                limits.append('Output/Verification=true')
+            arguments = ['scene.prm'] + case.options + limits
+            if case.restarts:
+                self.run(case.dimension, arguments + ['Output/Checkpoint=true'])
+                files = [os.path.join(d, f) for d, _, fs in os.walk('results')
+                         for f in fs if 'checkpoint' in d]
+                if files:
+                    name = case.random.choice(sorted(files))
+                    write(name, case.change_bytes(read(name)))
+                    arguments.append('Refinement/Levels=2')
+                    arguments.append('--restart')
+            result = self.run(case.dimension, arguments)
+            problem = self.problems(*result)
+            if problem is None and verify and result[0] == 0 and os.path.exists(
+                    'results/history.h5'):
+                done = subprocess.run([sys.executable, self.a.verify, 'results'],
+                                      stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+                if done.returncode == 1:
+                    problem = 'certificate refuted'
+                    result = (result[0], result[1], done.stdout.decode())
+            self.outcomes[result[0]] = self.outcomes.get(result[0], 0) + 1
+            if problem:
+                self.findings.setdefault(problem, []).append(seed)
+                print('seed %d, %dD: %s' % (seed, case.dimension, problem), flush=True)
+                folder = os.path.join(self.found, '%s-%d' % (
+                    re.sub(r'\W+', '-', problem), seed))
+                shutil.rmtree(folder, ignore_errors=True)
+                shutil.copytree(work, folder)
+                write(os.path.join(folder, 'arguments'), '\n'.join(arguments).encode())
+                write(os.path.join(folder, 'output'),
+                      ('status %s\n%s\n%s' % result).encode())
+        finally:
+            os.chdir(here)
+            shutil.rmtree(work, ignore_errors=True)
+
+    def main(self):
+        begin, seed = time.time(), self.a.seed
+        self.try_seed(seed)
+        while time.time() - begin < self.a.seconds:
+            seed += 1
+            self.try_seed(seed)
+        print('%d inputs, of which %s' % (self.n_inputs, ', '.join(
+            '%d ended with status %s' % (n, s) for s, n in sorted(
+                self.outcomes.items(), key=str))))
+        for problem, seeds in sorted(self.findings.items()):
+            print('%s: %d, seeds %s' % (problem, len(seeds),
+                                       ' '.join(map(str, seeds[:10]))))
+        if not self.findings:
+            print('Nothing was found.')
+        return 1 if self.findings else 0
+
+
+if __name__ == '__main__':
+    parser = argparse.ArgumentParser()
+    for name in ('program_2d', 'program_3d', 'scenes_2d', 'scenes_3d', 'found'):
+        parser.add_argument(name)
+    parser.add_argument('--seconds', type=float, default=60.)
+    parser.add_argument('--seed', type=int, default=1)
+    parser.add_argument('--processes', nargs=3)
+    parser.add_argument('--verify')
+    sys.exit(Fuzzer(parser.parse_args()).main())
