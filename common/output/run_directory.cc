@@ -1,5 +1,6 @@
 #include <common/output/run_directory.h>
 #include <common/parallel/collective_error.h>
+#include <common/printable.h>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -219,7 +220,7 @@ namespace Friction
     if (!error && !std::filesystem::is_directory(directory, error))
       error = std::make_error_code(std::errc::not_a_directory);
     if (error)
-      throw InputError("The output directory '" + directory +
+      throw InputError("The output directory '" + excerpt(directory, 300) +
                        "' cannot be created: " + error.message() + ".");
   }
 
@@ -241,7 +242,7 @@ namespace Friction
     std::error_code   ignored;
     std::filesystem::remove(probe, ignored);
     if (!writable)
-      throw InputError("The output directory '" + directory +
+      throw InputError("The output directory '" + excerpt(directory, 300) +
                        "' cannot be written to: " + why + ".");
   }
 

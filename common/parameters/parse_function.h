@@ -3,6 +3,7 @@
 
 #include <common/parameters/parameters.h>
 #include <common/parameters/wrong_number.h>
+#include <common/printable.h>
 
 #include <deal.II/base/function_parser.h>
 #include <deal.II/base/utilities.h>
@@ -62,7 +63,7 @@ namespace Friction
         for (const std::string &component : components)
           text +=
             (text.empty() ? "" : ", ") + dealii::Utilities::trim(component);
-        throw InputError(where + ": '" + text +
+        throw InputError(where + ": '" + excerpt(text) +
                          "' cannot be understood; check its syntax and the "
                          "names in it.");
       }

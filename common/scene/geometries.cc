@@ -1,3 +1,4 @@
+#include <common/printable.h>
 #include <common/scene/geometries.h>
 
 #include <deal.II/base/numbers.h>
@@ -554,7 +555,8 @@ namespace Friction
       std::ifstream file(scene.mesh_file);
       if (!file)
         throw InputError(where + "cannot open the mesh file '" +
-                         scene.mesh_file + "'; correct 'Scene/Mesh file'.");
+                         excerpt(scene.mesh_file, 300) +
+                         "'; correct 'Scene/Mesh file'.");
       // A mesh of triangles may be read without complaint.
       bool is_good = true;
       try
@@ -570,8 +572,8 @@ namespace Friction
         }
       if (!is_good)
         throw InputError(
-          where + "the mesh file '" + scene.mesh_file + "' is not a " +
-          Utilities::int_to_string(dim) + "D mesh of " +
+          where + "the mesh file '" + excerpt(scene.mesh_file, 300) +
+          "' is not a " + Utilities::int_to_string(dim) + "D mesh of " +
           (dim == 2 ? "quadrilaterals" : "hexahedra") +
           " in Gmsh's .msh format; export it as such, with a physical " +
           (dim == 2 ? "surface" : "volume") +

@@ -1,7 +1,8 @@
 #include <common/compatibility.h>
 #include <common/parallel/collective_error.h>
-#include <common/scene/geometries.h>
 #include <common/parameters/parse_function.h>
+#include <common/printable.h>
+#include <common/scene/geometries.h>
 #include <common/scene/scene.h>
 
 #include <deal.II/base/geometry_info.h>
@@ -117,7 +118,7 @@ namespace Friction
       const bool is_number =
         !text.empty() && std::all_of(text.begin(), text.end(), ::isdigit);
       if (!is_number || text.size() > 9)
-        throw InputError(where + ": '" + text +
+        throw InputError(where + ": '" + excerpt(text) +
                          "' is no boundary id; give a number from 0 on.");
       return std::stoi(text);
     }
@@ -233,7 +234,7 @@ namespace Friction
         check_components(text.components, where);
         if (text.key.size() < 2 || text.key.front() != '(' ||
             text.key.back() != ')')
-          throw InputError(where + ": '" + text.key +
+          throw InputError(where + ": '" + excerpt(text.key) +
                            "' is no point; write it as '" +
                            (dim == 2 ? "(x, y)" : "(x, y, z)") + "'.");
         std::vector<double> coordinates;
@@ -265,9 +266,9 @@ namespace Friction
             pinned.push_back({point, d, value[d]});
       }
 
-    // Contact holds a body only where it is pressed, and where that is is not known in
-    // advance, so the displacement conditions have to do it alone. A part of
-    // the boundary and every component: that leaves out only oddities.
+    // Contact holds a body only where it is pressed, and where that is is not
+    // known in advance, so the displacement conditions have to do it alone. A
+    // part of the boundary and every component: that leaves out only oddities.
     if (dirichlet.empty())
       throw InputError(here +
                        "the displacement is prescribed nowhere on the "
