@@ -56,8 +56,7 @@ main(int argc, char **argv)
                                        "History.part.h5",
                                        ".writable-12",
                                        "body-0x.pvtu",
-                                       "notes.txt",
-                                       "body-05.pvtu "};
+                                       "notes.txt"};
 
   std::cout << std::boolalpha;
   for (const std::string &name : names)

@@ -413,7 +413,7 @@ class Faults:
                     demand(found[name] == wanted[name], f"{name} is another one")
             for name in ("body.pvd", "body.xdmf", "contact.pvd"):
                 if name in found:
-                    listed = re.findall(rb'file="([^"]*)"|>(body-\d+.h5):',
+                    listed = re.findall(rb'file="([^"]*)"|(body-\d+\.h5):',
                                         found[name])
                     listed = {(a or b).decode() for a, b in listed}
                     demand(listed and listed <= set(found), f"{name}: {listed}")
