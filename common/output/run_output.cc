@@ -2,6 +2,7 @@
 #include <common/output/profile.h>
 #include <common/output/run_output.h>
 #include <common/parallel/collective_error.h>
+#include <common/printable.h>
 
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
@@ -64,7 +65,7 @@ namespace Friction
     , checkpoints(directory, communicator)
   {
     if (!lock.warning().empty())
-      the_console.warning(lock.warning());
+      the_console.warning(printable(lock.warning()));
     if (!scene.warning().empty())
       the_console.warning(scene.warning());
   }
@@ -163,7 +164,7 @@ namespace Friction
       warning = remove_left_overs(directory, is_left_over);
     });
     if (!warning.empty())
-      the_console.warning(warning);
+      the_console.warning(printable(warning));
   }
 
 
@@ -324,7 +325,7 @@ namespace Friction
     const unsigned int      level = last.level;
     const std::vector<char> bytes = checkpoints.record(level);
     if (!last.warning.empty())
-      the_console.warning(last.warning);
+      the_console.warning(printable(last.warning));
 
     // All processes read the same record, and find the same faults in it.
     const std::string here = "The checkpoint of level " +

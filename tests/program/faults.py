@@ -456,11 +456,16 @@ class Faults:
 
     # --- killed ---------------------------------------------------------------
 
+    def some_format(self):
+        """Of the fields, which may be another one after a restart."""
+        return self.random.choice([["Output/Format=vtu"], ["Output/Format=hdf5"]])
+
     def kill_once(self, directory, restart, choose):
         """Start a run and kill what CHOOSE says at a random moment. Returns its
         result, and whether it was killed at all."""
         _, _, seconds = self.whole()
-        process = self.start(directory, *(["--restart"] if restart else []))
+        process = self.start(directory, *(["--restart"] if restart else []),
+                             *self.some_format())
         time.sleep(self.random.uniform(0., seconds))
         victims = choose(self.processes_in(directory))
         for victim in victims:
@@ -469,6 +474,13 @@ class Faults:
             except ProcessLookupError:
                 pass
         result = self.finish(process, 120)
+        # Those that are left end when they notice that their launcher has gone.
+        for _ in range(100):
+            if not self.processes_in(directory):
+                break
+            time.sleep(.1)
+        else:
+            raise Failure("some processes are still there")
         return result, bool(victims) and result.status != 0
 
     def kill_and_continue(self, directory, choose, again):
@@ -553,7 +565,7 @@ class Faults:
             shutil.rmtree(directory, ignore_errors=True)
             room = self.random.randrange(4096, size)
             resize(room)
-            result = self.run(directory)
+            result = self.run(directory, *self.some_format())
             statuses[result.status] += 1
             demand(result.status != 0, f"{room} bytes have been enough")
             demand(re.search(r"cannot be|space|full", result.err),
