@@ -95,8 +95,12 @@ class Faults:
     def start(self, *arguments, **keywords):
         """In a session of its own, with the output in files."""
         out, err = (tempfile.TemporaryFile("w+", dir=self.work) for _ in range(2))
+        # Programs of MPI that share a folder for their own purposes may remove it
+        # while another one starts.
+        own = tempfile.mkdtemp(prefix="mpi-", dir=self.work)
         process = subprocess.Popen(self.command(*arguments, **keywords), stdout=out,
                                    stderr=err, stdin=subprocess.DEVNULL,
+                                   env={**os.environ, "TMPDIR": own},
                                    start_new_session=True)
         process.files = out, err
         return process
@@ -190,7 +194,7 @@ class Faults:
         try:
             remark = function()
             print(f"ok      {name}" + (f": {remark}" if remark else ""), flush=True)
-        except Failure as failure:
+        except (Failure, OSError) as failure:
             print(f"FAILED  {name}: {failure}", flush=True)
             self.failures += 1
 
