@@ -76,6 +76,27 @@ namespace Friction
 
 
 
+    // The length of the file that deal.II writes vectors to, with @p payload
+    // bytes of them per cell. It begins with a few numbers: where in the data
+    // of a cell the first part ends, the second, and so on, the last one being
+    // that of the vectors. Of a file that begins otherwise we expect nothing.
+    std::uint64_t
+    expected_length(const fs::path     &file,
+                    const std::uint64_t n_cells,
+                    const std::uint64_t payload)
+    {
+      std::ifstream in(file, std::ios::binary);
+      std::uint32_t end = 0;
+      for (unsigned int n = 1;
+           n <= 8 && in.read(reinterpret_cast<char *>(&end), sizeof(end));
+           ++n)
+        if (end >= payload && end <= payload + 64)
+          return n * sizeof(end) + n_cells * end;
+      return 0;
+    }
+
+
+
     // Removes a directory on the way out, if it is still there then: what is
     // half-written would take room on a disk that may be full.
     class UnfinishedDirectory
@@ -156,12 +177,14 @@ namespace Friction
         pointers.push_back(&ghosted[i]);
       }
     const std::uint64_t n_cells = triangulation.n_global_active_cells();
-    const std::uint64_t size    = n_cells * vectors.size() *
-      dof_handler.get_fe().n_dofs_per_cell() * sizeof(double);
+    const std::uint64_t payload =
+      vectors.size() * dof_handler.get_fe().n_dofs_per_cell() * sizeof(double);
     // Besides vectors there are a few numbers per cell, and what disks round
     // up.
-    demand_space(
-      (part / "mesh").string(), communicator, size + 64 * n_cells + (1 << 16));
+    demand_space((part / "mesh").string(),
+                 (part / "trial").string(),
+                 communicator,
+                 n_cells * (payload + 32) + (1 << 15));
     try
       {
         Compatibility::SolutionTransfer<dim, VectorType> transfer(dof_handler);
@@ -174,11 +197,14 @@ namespace Friction
       }
 
     // Not all who write look whether they could.
+    const fs::path vectors_file = part / "mesh_fixed.data";
     on_first_process(communicator, [&]() {
       with_sentence(sentence, [&]() {
         if (fs::file_size(part / "mesh") == 0 ||
             fs::file_size(part / "mesh.info") == 0 ||
-            fs::file_size(part / "mesh_fixed.data") < size)
+            fs::file_size(vectors_file) < n_cells * payload ||
+            fs::file_size(vectors_file) <
+              expected_length(vectors_file, n_cells, payload))
           throw InputError(sentence + " completely: is the disk full?");
       });
     });

@@ -13,6 +13,7 @@ Scenarios:
   lost    one of several processes killed
   full    a disk that gets full at random moments, in a mount namespace of its own;
           skipped, and said so, where the system does not allow one
+  quota   files that may not get longer than a limit, which cannot be known before
 
 A level is lost if a run that is continued solves it once more although its row had
 been printed; at most one may be lost each time. Moments and bits are random but, for
@@ -23,6 +24,7 @@ import collections
 import os
 import random
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -92,8 +94,14 @@ class Faults:
             words = [self.options.mpiexec, self.options.numproc_flag, str(n), *words]
         return words
 
-    def start(self, *arguments, **keywords):
+    def start(self, *arguments, longest_file=None, **keywords):
         """In a session of its own, with the output in files."""
+        def limit():
+            # As a quota does, this makes writing fail, but sends no signal.
+            if longest_file is not None:
+                signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+                resource.setrlimit(resource.RLIMIT_FSIZE, (longest_file,) * 2)
+
         out, err = (tempfile.TemporaryFile("w+", dir=self.work) for _ in range(2))
         # Programs of MPI that share a folder for their own purposes may remove it
         # while another one starts.
@@ -101,7 +109,7 @@ class Faults:
         process = subprocess.Popen(self.command(*arguments, **keywords), stdout=out,
                                    stderr=err, stdin=subprocess.DEVNULL,
                                    env={**os.environ, "TMPDIR": own},
-                                   start_new_session=True)
+                                   start_new_session=True, preexec_fn=limit)
         process.files = out, err
         return process
 
@@ -601,6 +609,41 @@ class Faults:
         finally:
             subprocess.run(["umount", str(disk)], check=False)
 
+    def quota(self):
+        whole, _, _ = self.whole()
+        longest = max(path.stat().st_size for path in
+                      whole.glob("checkpoint-*/mesh_fixed.data"))
+        statuses = collections.Counter()
+
+        def attempt():
+            directory = self.work / "quota"
+            shutil.rmtree(directory, ignore_errors=True)
+            # Larger than what anything but checkpoints is, as far as possible.
+            limit = self.random.randrange(longest // 16, longest)
+            result = self.run(directory, "Output/Fields=false", longest_file=limit)
+            statuses[result.status] += 1
+            demand(result.status != 0, f"{limit} bytes have been enough")
+            demand(result.status > 0, f"{limit} bytes: {result}")
+            n_rows = len(rows_of(result.out))
+            level = newest_checkpoint(directory)
+            demand(level >= n_rows - 1, f"{n_rows} rows, but checkpoint {level}")
+            if level > 0:
+                result = self.run(directory, "--restart")
+                demand("Warning" not in result.out, f"damaged: {result.out}")
+            else:
+                result = self.run(directory)
+            self.demand_whole_result(directory, result)
+
+        def everything():
+            for i in range(self.options.tries):
+                try:
+                    attempt()
+                except Failure as failure:
+                    raise Failure(f"try {i + 1}: {failure}") from None
+            return f"{self.options.tries} limits, " + ", ".join(
+                f"status {status}: {n}" for status, n in sorted(statuses.items()))
+        self.verdict(f"quota: {self.options.processes} processes", everything)
+
 
 def in_namespace():
     """Start this script again where its mounts are nobody else's business."""
@@ -618,7 +661,8 @@ def main():
     parser.add_argument("program")
     parser.add_argument("scene")
     parser.add_argument("scenarios", nargs="+",
-                        choices=["damage", "lock", "stale", "kill", "lost", "full"])
+                        choices=["damage", "lock", "stale", "kill", "lost", "full",
+                                 "quota"])
     parser.add_argument("--tries", type=int, default=2)
     parser.add_argument("--processes", type=int, default=1)
     parser.add_argument("--mpiexec")
