@@ -1,5 +1,6 @@
 #include <common/compatibility.h>
 #include <common/output/checkpoint.h>
+#include <common/output/manifest.h>
 #include <common/parallel/collective_error.h>
 
 #include <algorithm>
@@ -22,7 +23,7 @@ namespace Friction
 
 
 
-    // The level of a directory with a complete checkpoint, from its name.
+    // The level of a directory with the name of a checkpoint.
     std::optional<unsigned int>
     level_of(const fs::path &path)
     {
@@ -30,9 +31,9 @@ namespace Friction
       if (name.rfind(prefix + "-", 0) != 0)
         return {};
       const std::string number = name.substr(prefix.size() + 1);
-      if (number.empty() || number.size() > 6 ||
-          number.find_first_not_of("0123456789") != number.npos ||
-          !fs::exists(path / "record"))
+      if (number.size() < 2 || number.size() > 6 ||
+          (number.size() > 2 && number[0] == '0') ||
+          number.find_first_not_of("0123456789") != number.npos)
         return {};
       return std::stoul(number);
     }
@@ -72,6 +73,52 @@ namespace Friction
         }
       throw_if_any(communicator, error);
     }
+
+
+
+    // The length of the file that deal.II writes vectors to, with @p payload
+    // bytes of them per cell. It begins with a few numbers: where in the data
+    // of a cell the first part ends, the second, and so on, the last one being
+    // that of the vectors. Of a file that begins otherwise we expect nothing.
+    std::uint64_t
+    expected_length(const fs::path     &file,
+                    const std::uint64_t n_cells,
+                    const std::uint64_t payload)
+    {
+      std::ifstream in(file, std::ios::binary);
+      std::uint32_t end = 0;
+      for (unsigned int n = 1;
+           n <= 8 && in.read(reinterpret_cast<char *>(&end), sizeof(end));
+           ++n)
+        if (end >= payload && end <= payload + 64)
+          return n * sizeof(end) + n_cells * end;
+      return 0;
+    }
+
+
+
+    // Removes a directory on the way out, if it is still there then: what is
+    // half-written would take room on a disk that may be full.
+    class UnfinishedDirectory
+    {
+    public:
+      explicit UnfinishedDirectory(const fs::path &path)
+        : path(path)
+      {}
+
+      UnfinishedDirectory(const UnfinishedDirectory &)            = delete;
+      UnfinishedDirectory &operator=(const UnfinishedDirectory &) = delete;
+
+      ~UnfinishedDirectory()
+      {
+        std::error_code ignored;
+        if (!path.empty())
+          fs::remove_all(path, ignored);
+      }
+
+    private:
+      const fs::path path;
+    };
   } // namespace
 
 
@@ -105,6 +152,8 @@ namespace Friction
     const fs::path    part = directory.file(prefix + unfinished);
     const std::string sentence =
       "The checkpoint '" + path(level) + "' cannot be written";
+    const bool first = Utilities::MPI::this_mpi_process(communicator) == 0;
+    const UnfinishedDirectory unfinished_directory(first ? part : "");
 
     on_first_process(communicator, [&]() {
       with_sentence(sentence, [&]() {
@@ -127,9 +176,15 @@ namespace Friction
         ghosted[i].update_ghost_values();
         pointers.push_back(&ghosted[i]);
       }
-    const std::uint64_t size = triangulation.n_global_active_cells() *
+    const std::uint64_t n_cells = triangulation.n_global_active_cells();
+    const std::uint64_t payload =
       vectors.size() * dof_handler.get_fe().n_dofs_per_cell() * sizeof(double);
-    demand_space((part / "mesh").string(), communicator, size);
+    // Besides vectors there are a few numbers per cell, and what disks round
+    // up.
+    demand_space((part / "mesh").string(),
+                 (part / "trial").string(),
+                 communicator,
+                 n_cells * (payload + 32) + (1 << 15));
     try
       {
         Compatibility::SolutionTransfer<dim, VectorType> transfer(dof_handler);
@@ -142,51 +197,87 @@ namespace Friction
       }
 
     // Not all who write look whether they could.
+    const fs::path vectors_file = part / "mesh_fixed.data";
     on_first_process(communicator, [&]() {
       with_sentence(sentence, [&]() {
         if (fs::file_size(part / "mesh") == 0 ||
             fs::file_size(part / "mesh.info") == 0 ||
-            fs::file_size(part / "mesh_fixed.data") < size)
+            fs::file_size(vectors_file) < n_cells * payload ||
+            fs::file_size(vectors_file) <
+              expected_length(vectors_file, n_cells, payload))
           throw InputError(sentence + " completely: is the disk full?");
       });
     });
 
     // From here on the first process acts alone. A directory is a file, too;
-    // its entries, and then its new name, have to reach the disk as well.
+    // its entries, and then its new name, have to reach the disk as well. What
+    // the manifest says is read from the disk, or from where the system keeps
+    // what is there.
     on_first_process(communicator, [&]() {
       with_sentence(sentence, [&]() {
-        for (const auto &entry : fs::directory_iterator(part))
-          flush_to_disk(entry.path().string());
+        const auto flush_all = [&]() {
+          for (const auto &entry : fs::directory_iterator(part))
+            flush_to_disk(entry.path().string());
+        };
+        flush_all();
+        Manifest::write(part.string(), level);
+        flush_all();
         flush_to_disk(part.string());
         fs::remove_all(path(level) + unfinished);
         if (fs::exists(path(level)))
           fs::rename(path(level), path(level) + unfinished);
         fs::rename(part, path(level));
         flush_to_disk(directory.path());
-        remove_all_but(path(level));
+
+        // The one before is kept.
+        std::vector<unsigned int> old = levels();
+        const auto                before =
+          std::find_if(old.begin(), old.end(), [&](const unsigned int l) {
+            return l < level;
+          });
+        if (before != old.end())
+          old.erase(before);
+        old.erase(std::find(old.begin(), old.end(), level));
+        remove(old);
       });
     });
   }
 
 
 
-  unsigned int
-  Checkpoints::last_level() const
+  Checkpoints::Last
+  Checkpoints::find_last() const
   {
-    int last = -1;
+    Last last;
     on_first_process(communicator, [&]() {
-      with_sentence(
-        "The directory '" + directory.path() + "' cannot be read", [&]() {
-          for (const auto &entry : fs::directory_iterator(directory.path()))
-            if (const auto level = level_of(entry.path()))
-              last = std::max<int>(last, *level);
-        });
-      if (last < 0)
+      std::vector<unsigned int> candidates;
+      with_sentence("The directory '" + directory.path() + "' cannot be read",
+                    [&]() { candidates = levels(); });
+      if (candidates.empty())
         throw InputError("There is no checkpoint in '" + directory.path() +
                          "' to restart from; a run writes them with "
                          "'Output/Checkpoint=true'.");
+
+      std::string faults;
+      for (const unsigned int level : candidates)
+        {
+          const std::string fault = Manifest::fault(path(level), level);
+          if (fault.empty())
+            {
+              last.level = level;
+              if (!faults.empty())
+                last.warning = "Warning: " + faults +
+                  "; the run continues from '" + path(level) + "' instead.";
+              return;
+            }
+          faults += (faults.empty() ? "the checkpoint '" : "; '") +
+            path(level) + "' cannot be used: " + fault;
+        }
+      faults[0] = 'T';
+      throw InputError(faults + "; begin anew, without --restart.");
     });
-    return Utilities::MPI::broadcast(communicator, last);
+    last.level = Utilities::MPI::broadcast(communicator, last.level);
+    return last;
   }
 
 
@@ -246,36 +337,66 @@ namespace Friction
     on_first_process(communicator, [&]() {
       with_sentence("Old checkpoints in '" + directory.path() +
                       "' cannot be removed",
-                    [&]() { remove_all_but(""); });
+                    [&]() { remove(levels()); });
     });
   }
 
 
 
   void
-  Checkpoints::remove_all_but(const std::string &kept) const
+  Checkpoints::remove_after(const unsigned int level) const
   {
-    std::vector<fs::path> old;
+    on_first_process(communicator, [&]() {
+      with_sentence(
+        "Old checkpoints in '" + directory.path() + "' cannot be removed",
+        [&]() {
+          std::vector<unsigned int> old = levels();
+          old.erase(
+            std::find_if(old.begin(),
+                         old.end(),
+                         [&](const unsigned int l) { return l <= level; }),
+            old.end());
+          remove(old);
+        });
+    });
+  }
+
+
+
+  // The last one first.
+  std::vector<unsigned int>
+  Checkpoints::levels() const
+  {
+    std::vector<unsigned int> levels;
+    for (const auto &entry : fs::directory_iterator(directory.path()))
+      if (const auto level = level_of(entry.path()))
+        if (entry.is_directory())
+          levels.push_back(*level);
+    std::sort(levels.rbegin(), levels.rend());
+    return levels;
+  }
+
+
+
+  // What is left of unfinished ones is removed in any case.
+  void
+  Checkpoints::remove(const std::vector<unsigned int> &old) const
+  {
+    for (const unsigned int level : old)
+      {
+        fs::remove_all(path(level) + unfinished);
+        fs::rename(path(level), path(level) + unfinished);
+      }
+    std::vector<fs::path> parts;
     for (const auto &entry : fs::directory_iterator(directory.path()))
       {
-        const std::string name = entry.path().filename().string();
-        const bool        is_part =
-          name.rfind(prefix, 0) == 0 && entry.path().extension() == unfinished;
-        if (entry.is_directory() && entry.path() != fs::path(kept) &&
-            (is_part || level_of(entry.path())))
-          old.push_back(entry.path());
+        const fs::path stem = entry.path().stem();
+        if (entry.path().extension() == unfinished && entry.is_directory() &&
+            (stem == prefix || level_of(stem)))
+          parts.push_back(entry.path());
       }
-    for (fs::path &directory_name : old)
-      {
-        if (directory_name.extension() != unfinished)
-          {
-            const fs::path renamed = directory_name.string() + unfinished;
-            fs::remove_all(renamed);
-            fs::rename(directory_name, renamed);
-            directory_name = renamed;
-          }
-        fs::remove_all(directory_name);
-      }
+    for (const fs::path &part : parts)
+      fs::remove_all(part);
   }
 
 

@@ -22,13 +22,19 @@ namespace Friction
    * - `mesh` and the files beside it that deal.II makes: the mesh of that
    *   level, and the vectors that were interpolated to it;
    * - `record`: whatever else the run wants to remember, as a sequence of
-   *   bytes.
+   *   bytes;
+   * - `manifest`: what the others have to be like, see Manifest.
    *
    * A checkpoint is complete or absent. It is written as `checkpoint.part`, and
    * gets its name when all of it is on the disk. Only then its predecessors are
    * removed, and they lose their names before they lose any of their files. A
    * run that is killed may leave directories with `.part` in their names; they
    * are never read, and the next checkpoint removes them.
+   *
+   * Disks err, and files get lost when they are moved. So the last two
+   * checkpoints are kept, and before anything of one is read, all of it is
+   * compared with its manifest. If the last one is damaged, the one before
+   * takes its place, which costs the solution of one level.
    *
    * Vectors are stored cell by cell, and p4est cuts the mesh anew when it is
    * read. Therefore the number of processes may be another one then.
@@ -41,8 +47,17 @@ namespace Friction
   public:
     Checkpoints(const RunDirectory &directory, const MPI_Comm communicator);
 
+    /// From where a run can go on.
+    struct Last
+    {
+      unsigned int level = 0;
+
+      /// A sentence if it is not the last one that was written, or nothing.
+      std::string warning;
+    };
+
     /**
-     * Write a checkpoint, and remove all others.
+     * Write a checkpoint, and remove all others but the one before.
      *
      * @param level    the level that is to be solved next.
      * @param record   that of the first process is written.
@@ -58,10 +73,10 @@ namespace Friction
                           *>                                  &vectors) const;
 
     /**
-     * The level of the last checkpoint that is complete. Throws an InputError
-     * if there is none.
+     * The last checkpoint that is as it was written. Throws an InputError if
+     * there is none, which says what is wrong with those that there are.
      */
-    unsigned int last_level() const;
+    Last find_last() const;
 
     /// The record of a checkpoint, on all processes.
     std::vector<char> record(const unsigned int level) const;
@@ -88,11 +103,15 @@ namespace Friction
     /// Remove all checkpoints, and what is left of unfinished ones.
     void remove_all() const;
 
+    /// The same for those of levels after a given one.
+    void remove_after(const unsigned int level) const;
+
   private:
     std::string path(const unsigned int level) const;
 
-    /// To be called by the first process only.
-    void remove_all_but(const std::string &kept) const;
+    /// These are to be called by the first process only.
+    std::vector<unsigned int> levels() const;
+    void remove(const std::vector<unsigned int> &old) const;
 
     const RunDirectory directory;
     const MPI_Comm     communicator;

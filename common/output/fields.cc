@@ -1,6 +1,7 @@
 #include <common/compatibility.h>
 #include <common/discretization/volumetric_strain.h>
 #include <common/output/fields.h>
+#include <common/output/left_overs.h>
 #include <common/parallel/collective_error.h>
 
 #include <deal.II/numerics/data_postprocessor.h>
@@ -354,10 +355,12 @@ namespace Friction
       fs::remove(directory.file(file_name(what, level) + ".pvtu"));
       std::vector<fs::path> pieces;
       for (const auto &entry : fs::directory_iterator(directory.path()))
-        if (entry.path().extension() == ".vtu" &&
-            entry.path().filename().string().rfind(file_name(what, level) + ".",
-                                                   0) == 0)
-          pieces.push_back(entry.path());
+        {
+          const auto file = run_file(entry.path().filename().string());
+          if (file && file->what == what && file->ending == "vtu" &&
+              file->level == static_cast<int>(level) && entry.is_regular_file())
+            pieces.push_back(entry.path());
+        }
       for (const fs::path &piece : pieces)
         fs::remove(piece);
     });

@@ -1,5 +1,6 @@
 #include <common/output/run_directory.h>
 #include <common/parallel/collective_error.h>
+#include <common/printable.h>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -146,10 +147,13 @@ namespace Friction
 
 
 
-  // What the file system does not know, quotas for example, is found out too
-  // late; but it is better to know about full disks than about nothing.
+  // Asking is not enough: the file system does not know quotas of its users,
+  // nor what others are about to write. MPI does not even say if of the last
+  // bytes of a file only some were written. So we take the room, and leave it
+  // again.
   void
   demand_space(const std::string  &file_name,
+               const std::string  &trial,
                const MPI_Comm      communicator,
                const std::uint64_t size)
   {
@@ -157,7 +161,23 @@ namespace Friction
       std::error_code error;
       const auto      space = std::filesystem::space(
         std::filesystem::absolute(file_name).parent_path(), error);
-      if (!error && space.available < size)
+      bool is_room = error || space.available >= size;
+#ifdef __linux__
+      const int file =
+        ::open(trial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+      if (is_room && file >= 0)
+        // Some file systems cannot do this, and have other answers.
+        is_room = ::fallocate(file, 0, 0, size) == 0 ||
+          (errno != ENOSPC && errno != EDQUOT && errno != EFBIG);
+      if (file >= 0)
+        {
+          ::close(file);
+          ::unlink(trial.c_str());
+        }
+#else
+      (void)trial;
+#endif
+      if (!is_room)
         throw InputError("The file '" + file_name +
                          "' cannot be written: there is not enough space.");
     });
@@ -180,7 +200,7 @@ namespace Friction
     if (!first)
       file.leave_alone();
 
-    demand_space(final_name, communicator, size);
+    demand_space(final_name, file.name(), communicator, size);
     try
       {
         write_to(file.name());
@@ -219,7 +239,7 @@ namespace Friction
     if (!error && !std::filesystem::is_directory(directory, error))
       error = std::make_error_code(std::errc::not_a_directory);
     if (error)
-      throw InputError("The output directory '" + directory +
+      throw InputError("The output directory '" + excerpt(directory, 300) +
                        "' cannot be created: " + error.message() + ".");
   }
 
@@ -241,7 +261,7 @@ namespace Friction
     std::error_code   ignored;
     std::filesystem::remove(probe, ignored);
     if (!writable)
-      throw InputError("The output directory '" + directory +
+      throw InputError("The output directory '" + excerpt(directory, 300) +
                        "' cannot be written to: " + why + ".");
   }
 

@@ -35,10 +35,15 @@ namespace Friction
                            const std::function<void(std::ostream &)> &write_to);
 
   /**
-   * Throws an InputError on all processes if there are less than @p size bytes
-   * left on the disk that a file is to be written to. Collective.
+   * Throws an InputError on all processes if a file of @p size bytes cannot be
+   * written, since there is no room or a quota. Collective.
+   *
+   * @param file_name  what the sentence names.
+   * @param trial      where that much room is taken for a moment: the name of a
+   *                   file that does not exist yet, on the same disk.
    */
   void demand_space(const std::string  &file_name,
+                    const std::string  &trial,
                     const MPI_Comm      communicator,
                     const std::uint64_t size);
 
@@ -46,8 +51,8 @@ namespace Friction
    * The same for one file that all processes write together: @p write_to is
    * called by all of them with the same temporary name, the first one renames.
    * That the disk is full is asked for before, and is an InputError on all of
-   * them. What cannot be known before, a quota for example, is found out in the
-   * middle of collective operations and ends all processes.
+   * them. What cannot be known before is found out in the middle of collective
+   * operations and ends all processes.
    *
    * @param size  in bytes, about, of the whole file.
    */

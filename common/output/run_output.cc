@@ -2,6 +2,8 @@
 #include <common/output/profile.h>
 #include <common/output/run_output.h>
 #include <common/output/warnings.h>
+#include <common/parallel/collective_error.h>
+#include <common/printable.h>
 
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
@@ -46,6 +48,7 @@ namespace Friction
     : parameters(parameters)
     , communicator(communicator)
     , directory(parameters.output.directory, communicator)
+    , lock(directory, communicator)
     , the_console(out,
                   parameters.output.times ? Console::Times::shown
                                           : Console::Times::hidden,
@@ -69,6 +72,8 @@ namespace Friction
   void
   RunOutput<dim>::check_start(const Discretization<dim> &discretization)
   {
+    if (!lock.warning().empty())
+      the_console.warning(printable(lock.warning()));
     for (const std::string &warning :
          warnings_at_start(discretization, parameters))
       the_console.warning(warning);
@@ -105,10 +110,10 @@ namespace Friction
                             const VectorType          &displacement,
                             const Vector<float>       &cell_errors)
   {
-    // These results take the place of older ones, to which the checkpoints
-    // belong.
-    if (records.level.level == 0 && !restarted)
-      checkpoints.remove_all();
+    const bool is_first = !any_level;
+    any_level           = true;
+    if (is_first && !restarted)
+      remove_other_run();
 
     the_console.level_complete(records.level);
     if (!records.attempts.empty())
@@ -128,6 +133,60 @@ namespace Friction
                           displacement,
                           cell_errors.size() > 0 ? &cell_errors : nullptr},
                          records.own_contact);
+    if (is_first && restarted)
+      remove_levels_after(records.level.level);
+  }
+
+
+
+  // These results take the place of older ones, to which checkpoints and fields
+  // belong; the history will be replaced as a whole. So a run that does not get
+  // to the end of its first level leaves everything as it was.
+  template <int dim>
+  void
+  RunOutput<dim>::remove_other_run()
+  {
+    checkpoints.remove_all();
+    remove_files([](const RunFile &) { return true; });
+  }
+
+
+
+  // The lists of levels have just been written, but only those of the present
+  // format. What others name stays, and so does everything if there are no
+  // fields any more: it belongs to the same problem.
+  template <int dim>
+  void
+  RunOutput<dim>::remove_levels_after(const unsigned int level)
+  {
+    checkpoints.remove_after(level);
+    const auto is_listed = [this](const RunFile &file) {
+      if (file.what == "verify")
+        return true;
+      return parameters.output.fields &&
+        (file.what == "contact" ||
+         (file.ending == "h5") ==
+           (parameters.output.format == FieldFormat::hdf5));
+    };
+    remove_files([&](const RunFile &file) {
+      return file.unfinished ||
+        (file.level > static_cast<int>(level) && is_listed(file));
+    });
+  }
+
+
+
+  template <int dim>
+  void
+  RunOutput<dim>::remove_files(
+    const std::function<bool(const RunFile &)> &is_left_over)
+  {
+    std::string warning;
+    on_first_process(communicator, [&]() {
+      warning = remove_left_overs(directory, is_left_over);
+    });
+    if (!warning.empty())
+      the_console.warning(printable(warning));
   }
 
 
@@ -288,8 +347,11 @@ namespace Friction
   unsigned int
   RunOutput<dim>::load_checkpoint(Triangulation &triangulation)
   {
-    const unsigned int      level = checkpoints.last_level();
+    const Checkpoints::Last last  = checkpoints.find_last();
+    const unsigned int      level = last.level;
     const std::vector<char> bytes = checkpoints.record(level);
+    if (!last.warning.empty())
+      the_console.warning(printable(last.warning));
 
     // All processes read the same record, and find the same faults in it.
     const std::string here = "The checkpoint of level " +

@@ -5,12 +5,15 @@
 #include <common/estimate/exact_error.h>
 #include <common/output/checkpoint.h>
 #include <common/output/console.h>
+#include <common/output/directory_lock.h>
 #include <common/output/fields.h>
 #include <common/output/history.h>
+#include <common/output/left_overs.h>
 #include <common/output/level_records.h>
 #include <common/output/run_directory.h>
 #include <common/scene/scene.h>
 
+#include <functional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -33,7 +36,7 @@ namespace Friction
 
     /**
      * Creates the output directory, so that a run which cannot write anything
-     * fails in its first second and not after its last level.
+     * fails in its first second and not after its last level, and locks it.
      *
      * @param out      where the console of the first process prints.
      * @param version  of the program.
@@ -57,9 +60,10 @@ namespace Friction
     Console &console();
 
     /**
-     * Put out what is known at the end of a level. Checkpoints that a previous
-     * run has left in the directory are removed then, unless this one has been
-     * started from them.
+     * Put out what is known at the end of a level. The first level that a run
+     * completes takes the place of what is there: files and checkpoints that
+     * earlier runs have left in the directory are removed then. A run that has
+     * been started from a checkpoint removes those of levels after its first.
      *
      * @param cell_errors  estimated errors of the active cells, or empty.
      */
@@ -123,10 +127,19 @@ namespace Friction
     /// A number that changes if the coarse mesh does.
     static double fingerprint(const Triangulation &triangulation);
 
+    /// What an earlier run has left, if this one began with the coarse mesh.
+    void remove_other_run();
+
+    /// What this run has left before it was continued with a level.
+    void remove_levels_after(const unsigned int level);
+
+    void remove_files(const std::function<bool(const RunFile &)> &is_left_over);
+
     const Parameters parameters;
     const MPI_Comm   communicator;
 
     RunDirectory     directory;
+    DirectoryLock    lock;
     Console          the_console;
     History<dim>     history;
     FieldWriter<dim> fields;
@@ -134,6 +147,7 @@ namespace Friction
 
     double last_exact_error = 0.;
     bool   restarted        = false;
+    bool   any_level        = false; ///< since this run was started
   };
 } // namespace Friction
 

@@ -1,4 +1,5 @@
 #include <common/parallel/collective_error.h>
+#include <common/printable.h>
 
 #include <iostream>
 
@@ -26,7 +27,7 @@ namespace Friction
   {
     if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1)
       {
-        std::cerr << "Error: " << sentence << std::endl;
+        std::cerr << "Error: " << printable(sentence) << std::endl;
         MPI_Abort(communicator, 2);
       }
     throw InputError(sentence);

@@ -1,6 +1,7 @@
 #include <common/parameters/parameter_entries.h>
 #include <common/parameters/parameters.h>
 #include <common/parameters/parse_function.h>
+#include <common/printable.h>
 
 #include <deal.II/base/numbers.h>
 #include <deal.II/base/parameter_handler.h>
@@ -98,8 +99,10 @@ namespace Friction
 
 
     std::string
-    nearest(const std::string &name, const std::vector<std::string> &known)
+    nearest(const std::string &given, const std::vector<std::string> &known)
     {
+      // Much longer than what there is, which would take long to find out.
+      const std::string name = given.substr(0, 200);
       return *std::min_element(known.begin(),
                                known.end(),
                                [&](const std::string &a, const std::string &b) {
@@ -134,12 +137,13 @@ namespace Friction
             std::vector<std::string> known;
             for (const ParameterEntry &e : parameter_entries())
               known.push_back(e.path());
-            throw InputError(where + ": there is no entry '" + path +
+            throw InputError(where + ": there is no entry '" + excerpt(path) +
                              "'; did you mean '" + nearest(path, known) + "'?");
           }
         if (!entry->pattern->match(value))
-          throw InputError(where + ": '" + value + "' is no value for '" +
-                           path + "'; give " + wanted(*entry->pattern) + ".");
+          throw InputError(where + ": '" + excerpt(value) +
+                           "' is no value for '" + path + "'; give " +
+                           wanted(*entry->pattern) + ".");
         prm.enter_subsection(entry->section);
         prm.set(entry->name, value);
         prm.leave_subsection();
@@ -264,10 +268,11 @@ namespace Friction
       std::ifstream file(file_name);
       std::string   line;
       if (!file || file.peek() == std::ifstream::traits_type::eof())
-        throw InputError(
-          (file.is_open() ? "there is nothing in the scene file '"
-                          : "cannot read the scene file '") +
-          file_name + "'; give the path of an existing, readable scene.");
+        throw InputError((file.is_open()
+                            ? "there is nothing in the scene file '"
+                            : "cannot read the scene file '") +
+                         excerpt(file_name, 300) +
+                         "'; give the path of an existing, readable scene.");
 
       std::vector<std::string> sections;
       for (const ParameterEntry &entry : parameter_entries())
@@ -278,7 +283,8 @@ namespace Friction
       unsigned int n_lines = 0, section_line = 0;
       const auto   is_word = [](const std::string &text, const std::string &w) {
         return text.compare(0, w.size(), w) == 0 &&
-          (text.size() == w.size() || std::isspace(text[w.size()]));
+          (text.size() == w.size() ||
+           std::isspace(static_cast<unsigned char>(text[w.size()])));
       };
       while (std::getline(file, line))
         {
@@ -307,14 +313,14 @@ namespace Friction
             {
               const std::string name = Utilities::trim(line.substr(10));
               if (!section.empty())
-                throw InputError(where + ": section '" + name +
+                throw InputError(where + ": section '" + excerpt(name) +
                                  "' begins inside section '" + section +
                                  "'; close that one with 'end' first.");
               if (std::find(sections.begin(), sections.end(), name) ==
                   sections.end())
-                throw InputError(where + ": there is no section '" + name +
-                                 "'; did you mean '" + nearest(name, sections) +
-                                 "'?");
+                throw InputError(where + ": there is no section '" +
+                                 excerpt(name) + "'; did you mean '" +
+                                 nearest(name, sections) + "'?");
               section      = name;
               section_line = n_lines;
             }
@@ -336,7 +342,7 @@ namespace Friction
                 section.empty() ? name : section + "/" + name, value, where);
             }
           else
-            throw InputError(where + ": '" + line +
+            throw InputError(where + ": '" + excerpt(line) +
                              "' is neither 'subsection <name>', 'set <entry> = "
                              "<value>' nor 'end'; correct the line.");
         }
@@ -354,12 +360,12 @@ namespace Friction
       const auto equal = text.find('=');
       const auto slash = text.find('/');
       if (equal == text.npos || slash == text.npos || slash > equal)
-        throw InputError("override '" + text +
+        throw InputError("override '" + excerpt(text) +
                          "': this is not of the form Section/Entry=value; "
                          "quote it if it contains blanks.");
       values.set(Utilities::trim(text.substr(0, equal)),
                  Utilities::trim(text.substr(equal + 1)),
-                 "override '" + text + "'");
+                 "override '" + excerpt(text) + "'");
     }
 
 
@@ -408,7 +414,7 @@ namespace Friction
               return std::isalnum(c) || c == '_';
             });
           if (equal == part.npos || !good_name)
-            throw InputError(values.subject(path) + ": '" + part +
+            throw InputError(values.subject(path) + ": '" + excerpt(part) +
                              "' is not of the form 'name = expression'; "
                              "correct it.");
           if (taken.count(name) > 0)
@@ -438,7 +444,7 @@ namespace Friction
         {
           const auto colon = part.find(':');
           if (colon == part.npos || colon == 0)
-            throw InputError(values.subject(path) + ": '" + part +
+            throw InputError(values.subject(path) + ": '" + excerpt(part) +
                              "' is not of the form '" + form +
                              "'; correct it.");
           conditions.push_back({Utilities::trim(part.substr(0, colon)),
@@ -472,7 +478,7 @@ namespace Friction
       if (text != "discretisation")
         {
           if (!Patterns::Double(1e-300).match(text))
-            throw InputError(values.subject(name) + " is '" + text +
+            throw InputError(values.subject(name) + " is '" + excerpt(text) +
                              "'; take a positive number, or 'discretisation'.");
           solver.inner_tolerance = std::strtod(text.c_str(), nullptr);
           return;
@@ -612,10 +618,10 @@ namespace Friction
       parse_function<1>({expression}, *this, where, "no_coordinate")
         ->value(Point<1>());
     if (!std::isfinite(value))
-      throw InputError(where + ": '" + expression +
+      throw InputError(where + ": '" + excerpt(expression) +
                        "' is not a finite number; correct it.");
     if (std::abs(value) > largest_number)
-      throw InputError(where + ": '" + expression +
+      throw InputError(where + ": '" + excerpt(expression) +
                        "' is beyond 1e30; choose other units.");
     return value;
   }
@@ -646,11 +652,11 @@ namespace Friction
     const double F  = values.number("Contact/Friction coefficient");
     if (!(nu > -1. && nu < .5))
       throw InputError(values.subject("Material/Poisson ratio") + " is " +
-                       values.get("Material/Poisson ratio") +
+                       excerpt(values.get("Material/Poisson ratio")) +
                        ", but it must lie strictly between -1 and 1/2.");
     if (!(F >= 0.))
       throw InputError(values.subject("Contact/Friction coefficient") + " is " +
-                       values.get("Contact/Friction coefficient") +
+                       excerpt(values.get("Contact/Friction coefficient")) +
                        ", but it must not be negative.");
     parameters.material =
       Material(E,
@@ -702,7 +708,7 @@ namespace Friction
       for (const double length : scene.size)
         if (!(length >= 1. / largest_number))
           throw InputError(values.subject("Scene/Size") + " is '" +
-                           values.get("Scene/Size") +
+                           excerpt(values.get("Scene/Size")) +
                            "', but all lengths must be positive" +
                            (length > 0. ? ", and 1e-30 at least; choose other "
                                           "units."
@@ -711,7 +717,7 @@ namespace Friction
         {
           if (!(n >= 1. && n <= 1e6 && n == std::floor(n)))
             throw InputError(values.subject("Scene/Subdivisions") + " is '" +
-                             values.get("Scene/Subdivisions") +
+                             excerpt(values.get("Scene/Subdivisions")) +
                              "', but it must consist of positive integers.");
           scene.subdivisions.push_back(static_cast<unsigned int>(n));
         }
@@ -758,7 +764,7 @@ namespace Friction
             values.get("Obstacle/Length"), values.subject("Obstacle/Length"));
           if (!(obstacle.length > 0.))
             throw InputError(values.subject("Obstacle/Length") + " is '" +
-                             values.get("Obstacle/Length") +
+                             excerpt(values.get("Obstacle/Length")) +
                              "', but it must be positive.");
         }
       if (obstacle.kind == ObstacleKind::rods && obstacle.centers.empty())

@@ -3,6 +3,7 @@
 
 #include <common/parameters/parameters.h>
 #include <common/parameters/wrong_number.h>
+#include <common/printable.h>
 
 #include <deal.II/base/function_parser.h>
 #include <deal.II/base/utilities.h>
@@ -30,7 +31,7 @@ namespace Friction
         const char c = expression[i];
         depth += (c == '(') - (c == ')');
         if (c == ',' && depth == 0)
-          throw InputError(where + ": '" + expression +
+          throw InputError(where + ": '" + excerpt(expression) +
                            "' has several values where there should be one; "
                            "correct it.");
         if (c != '=')
@@ -40,7 +41,7 @@ namespace Friction
         const bool second_of_two = i > 0 &&
           std::string("=<>!").find(expression[i - 1]) != std::string::npos;
         if (!first_of_two && !second_of_two)
-          throw InputError(where + ": '" + expression +
+          throw InputError(where + ": '" + excerpt(expression) +
                            "' has a '=' in it, but nothing can be assigned "
                            "here; comparisons are written '=='.");
       }
@@ -95,7 +96,7 @@ namespace Friction
         for (const std::string &component : components)
           text +=
             (text.empty() ? "" : ", ") + dealii::Utilities::trim(component);
-        throw InputError(where + ": '" + text +
+        throw InputError(where + ": '" + excerpt(text) +
                          "' cannot be understood; check its syntax and the "
                          "names in it.");
       }

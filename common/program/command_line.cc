@@ -1,4 +1,5 @@
 #include <common/parallel/collective_error.h>
+#include <common/printable.h>
 #include <common/program/check_scene.h>
 #include <common/program/command_line.h>
 #include <common/program/version.h>
@@ -12,6 +13,7 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <sstream>
 #include <vector>
 
 namespace Friction
@@ -66,6 +68,36 @@ namespace Friction
         "an error of\n"
         "the program.\n";
     }
+
+
+
+    // What deal.II says has many lines, and may quote what the user gave us.
+    std::string
+    printable_lines(const std::string &text)
+    {
+      std::istringstream in(text);
+      std::string        result, line;
+      while (std::getline(in, line))
+        result += (result.empty() ? "" : "\n") + printable(line);
+      return result;
+    }
+
+
+
+    // Those that stand alone have been answered already.
+    void
+    check_options(const std::vector<std::string> &arguments)
+    {
+      for (const std::string &argument : arguments)
+        for (const std::string option : {"--help", "--version", "--parameters"})
+          if (argument == option)
+            throw InputError("'" + option + "' has to be the first argument.");
+      for (const std::string &argument : arguments)
+        if (argument.rfind("-", 0) == 0 && argument != "--restart")
+          throw InputError("'" + excerpt(argument) +
+                           "' is no option; there are '--restart', "
+                           "'--parameters', '--version' and '--help'.");
+    }
   } // namespace
 
 
@@ -87,7 +119,8 @@ namespace Friction
     // An unexpected exception may be that of a single process. We do not know
     // what the others are waiting for; only MPI can end them.
     const auto unexpected = [&](const std::string &what) {
-      std::cerr << program.name << ": unexpected error: " << what << std::endl;
+      std::cerr << program.name
+                << ": unexpected error: " << printable_lines(what) << std::endl;
       if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
         MPI_Abort(MPI_COMM_WORLD, 3);
       return 3;
@@ -124,6 +157,8 @@ namespace Friction
             return 0;
           }
 
+        on_all_processes(MPI_COMM_WORLD, [&]() { check_options(arguments); });
+
         // This one may stand anywhere, for it is easily appended to the command
         // line of the run that was interrupted.
         const auto restart =
@@ -159,7 +194,8 @@ namespace Friction
     catch (const InputError &error)
       {
         if (speaks)
-          std::cerr << program.name << ": " << error.what() << std::endl;
+          std::cerr << program.name << ": " << printable(error.what())
+                    << std::endl;
         return 2;
       }
     catch (const std::bad_alloc &)

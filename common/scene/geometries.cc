@@ -1,3 +1,4 @@
+#include <common/printable.h>
 #include <common/scene/geometries.h>
 
 #include <deal.II/base/numbers.h>

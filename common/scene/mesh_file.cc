@@ -1,4 +1,5 @@
 #include <common/input_error.h>
+#include <common/printable.h>
 #include <common/scene/mesh_file.h>
 
 #include <deal.II/base/geometry_info.h>
@@ -68,7 +69,7 @@ namespace Friction
 
   template <int dim>
   MeshFile<dim>::MeshFile(const std::string &path, const std::string &where)
-    : beginning(where + "the mesh file '" + path + "' ")
+    : beginning(where + "the mesh file '" + excerpt(path, 300) + "' ")
   {
     const GmshFile file = read_gmsh_file(path, where);
     check_kinds(file);
@@ -400,10 +401,10 @@ namespace Friction
     const auto found = ids_of_names.find(name);
     if (found == ids_of_names.end())
       throw InputError(
-        where + ": '" + name + "' is neither a number nor the name of a " +
+        where + ": '" + excerpt(name) + "' is neither a number nor the name of a " +
         (dim == 2 ? "physical curve" : "physical surface") +
         " of the mesh file, which has " +
-        (ids_of_names.empty() ? "no names" : names()) + "; correct it.");
+        (ids_of_names.empty() ? "no names" : excerpt(names(), 300)) + "; correct it.");
     return found->second;
   }
 

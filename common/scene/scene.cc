@@ -1,6 +1,7 @@
 #include <common/compatibility.h>
 #include <common/parallel/collective_error.h>
 #include <common/parameters/parse_function.h>
+#include <common/printable.h>
 #include <common/scene/geometries.h>
 #include <common/scene/mesh_size.h>
 #include <common/scene/rigid_motions.h>
@@ -204,7 +205,7 @@ namespace Friction
         check_components(text.components, where);
         if (text.key.size() < 2 || text.key.front() != '(' ||
             text.key.back() != ')')
-          throw InputError(where + ": '" + text.key +
+          throw InputError(where + ": '" + excerpt(text.key) +
                            "' is no point; write it as '" +
                            (dim == 2 ? "(x, y)" : "(x, y, z)") + "'.");
         std::vector<double> coordinates;

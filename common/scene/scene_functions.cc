@@ -1,5 +1,6 @@
 #include <common/input_error.h>
 #include <common/parameters/parameters.h>
+#include <common/printable.h>
 #include <common/scene/scene_functions.h>
 
 #include <deal.II/base/point.h>
@@ -60,7 +61,7 @@ namespace Friction
         if (std::abs(value) <= largest_number)
           return;
         std::ostringstream sentence;
-        sentence << where << ": '" << text << "' is ";
+        sentence << where << ": '" << excerpt(text) << "' is ";
         // Not "-nan".
         if (std::isnan(value))
           sentence << "not a number";

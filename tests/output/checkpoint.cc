@@ -1,5 +1,6 @@
 // Checkpoints: what was written is read again, on as many processes or on
 // fewer; what is left of unfinished ones is never read, and removed in time.
+// One that is damaged is found, and the one before takes its place.
 
 #include <common/compatibility.h>
 #include <common/output/checkpoint.h>
@@ -12,10 +13,14 @@
 
 #include <deal.II/grid/grid_generator.h>
 
+#include <tests/support/check.h>
+#include <tests/support/random.h>
+
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <set>
+#include <sstream>
 
 using namespace dealii;
 using namespace Friction;
@@ -161,7 +166,7 @@ namespace
   load(const RunDirectory &directory, const MPI_Comm communicator)
   {
     const Checkpoints  checkpoints(directory, communicator);
-    const unsigned int level = checkpoints.last_level();
+    const unsigned int level = checkpoints.find_last().level;
     const auto         bytes = checkpoints.record(level);
 
     Mesh<dim> mesh(communicator,
@@ -197,6 +202,97 @@ namespace
 
 
 
+  // The contents of a file are exchanged for others, by the first process.
+  void
+  write(const std::string &file, const std::string &contents)
+  {
+    on_first_process(MPI_COMM_WORLD, [&]() {
+      std::ofstream(file, std::ios::binary) << contents;
+    });
+  }
+
+
+
+  std::string
+  read(const std::string &file)
+  {
+    std::ifstream      in(file, std::ios::binary);
+    std::ostringstream contents;
+    contents << in.rdbuf();
+    MPI_Barrier(MPI_COMM_WORLD);
+    return contents.str();
+  }
+
+
+
+  // Whatever happens to a file of the last checkpoint, the one before is found.
+  template <int dim>
+  void
+  damage(const RunDirectory &directory, const Checkpoints &checkpoints)
+  {
+    const std::string     last = directory.file("checkpoint-03/");
+    std::set<std::string> files;
+    for (const auto &entry : std::filesystem::directory_iterator(last))
+      files.insert(entry.path().filename().string());
+    Tests::check_everywhere(
+      files.count("record") == 1 && files.count("mesh") == 1 &&
+        files.count("mesh.info") == 1 && files.count("mesh_fixed.data") == 1 &&
+        files.count("manifest") == 1,
+      "all files are there");
+    MPI_Barrier(MPI_COMM_WORLD);
+
+    Tests::Random random(dim);
+    bool          all   = true;
+    const auto    check = [&](const std::string &file) {
+      const Checkpoints::Last found = checkpoints.find_last();
+      all                           = all && found.level == 2 &&
+        (!first() || found.warning.find("'" + file + "'") != std::string::npos);
+      MPI_Barrier(MPI_COMM_WORLD);
+    };
+    for (const std::string &file : files)
+      {
+        const std::string contents = read(last + file);
+        for (unsigned int i = 0; i < 20; ++i)
+          {
+            const unsigned int bit     = random.below(8 * contents.size());
+            std::string        damaged = contents;
+            damaged[bit / 8]           = damaged[bit / 8] ^ (1 << bit % 8);
+            write(last + file, damaged);
+            check(file);
+            write(last + file,
+                  contents.substr(0, random.below(contents.size())));
+            check(file);
+          }
+        on_first_process(MPI_COMM_WORLD,
+                         [&]() { std::filesystem::remove(last + file); });
+        check(file);
+        write(last + file, contents);
+      }
+    write(last + "more", "");
+    check("more");
+    Tests::check_everywhere(all, "all damage to the last one is found");
+    load<dim>(directory, MPI_COMM_WORLD);
+    on_first_process(MPI_COMM_WORLD,
+                     [&]() { std::filesystem::remove(last + "more"); });
+    Tests::check_everywhere(checkpoints.find_last().level == 3,
+                            "without damage it is the last one again");
+
+    // Both of them.
+    const std::string before   = directory.file("checkpoint-02/record");
+    const std::string contents = read(before);
+    write(before, contents.substr(1));
+    on_first_process(MPI_COMM_WORLD,
+                     [&]() { std::filesystem::remove(last + "mesh.info"); });
+    try_to([&]() { checkpoints.find_last(); });
+    write(before, contents);
+    if (first())
+      std::cout << "  " << checkpoints.find_last().warning << std::endl;
+    else
+      checkpoints.find_last();
+  }
+
+
+
   template <int dim>
   void
   test()
@@ -206,7 +302,7 @@ namespace
                      [&]() { std::filesystem::remove_all(name); });
     const RunDirectory directory(name, MPI_COMM_WORLD);
     const Checkpoints  checkpoints(directory, MPI_COMM_WORLD);
-    try_to([&]() { checkpoints.last_level(); });
+    try_to([&]() { checkpoints.find_last(); });
 
     // Left over by runs that were killed while they wrote one, or while they
     // removed one; and something that only looks like one.
@@ -220,7 +316,7 @@ namespace
       std::filesystem::create_directory(directory.file("checkpoint-77"));
       std::filesystem::create_directory(directory.file("checkpoint-notes"));
     });
-    try_to([&]() { checkpoints.last_level(); });
+    try_to([&]() { checkpoints.find_last(); });
     for (unsigned int level = 1; level < 4; ++level)
       save<dim>(checkpoints, level);
     list(directory);
@@ -236,13 +332,11 @@ namespace
       load<dim>(directory, half);
     MPI_Comm_free(&half);
 
-    // A mesh that has got lost is no reason to fall over.
-    MPI_Barrier(MPI_COMM_WORLD);
-    on_first_process(MPI_COMM_WORLD, [&]() {
-      std::filesystem::remove(directory.file("checkpoint-03/mesh.info"));
-    });
-    try_to([&]() { load<dim>(directory, MPI_COMM_WORLD); });
+    damage<dim>(directory, checkpoints);
+    list(directory);
 
+    checkpoints.remove_after(2);
+    list(directory);
     checkpoints.remove_all();
     list(directory);
   }

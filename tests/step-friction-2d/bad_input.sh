@@ -124,6 +124,55 @@ bad 'nothing prescribed vertically' 'y direction' \
 bad 'nothing prescribed horizontally' 'x direction' \
   "$block" 'Boundary conditions/Displacement=3: free, -0.02'
 
+# What is said of the input is a line that fits a screen or two, with nothing in it
+# that a terminal would obey.
+quoted()
+{
+  bad "$@"
+  problem=
+  [ "$(wc -c <stderr)" -lt 700 ] || problem="$problem $(wc -c <stderr) bytes"
+  LC_ALL=C grep -q '[^ -~]' stderr && problem="$problem something unprintable"
+  [ -z "$problem" ] || sed 's/[^ -~]/?/g' stderr | cut -c -700 >short
+  [ -z "$problem" ] || mv short stderr
+  verdict "$1, quoted" "$problem"
+}
+head -c 10000000 /dev/zero | tr '\0' a >long
+{ cat "$block" && cat long; } >long.prm
+quoted 'a line of 10 MB' 'long.prm:[0-9]*: .aaa.*aaa. is neither' long.prm
+{ echo 'subsection Material' && printf 'set ' && cat long && echo ' = 1'; } >long.prm
+quoted 'an entry of 10 MB' 'no entry .Material/aaa.*aaa.; did you mean' long.prm
+{ echo 'subsection Material' && printf 'set Poisson ratio = ' && cat long; } >long.prm
+quoted 'a value of 10 MB' 'aaa. is no value for .Material/Poisson ratio' long.prm
+{ printf 'subsection ' && cat long; } >long.prm
+quoted 'a section of 10 MB' 'no section .aaa.*aaa.; did you mean' long.prm
+{ cat "$block" && echo 'subsection Boundary conditions' &&
+  printf 'set Body force = 0, ' && cat long && printf '\nend\n'; } >long.prm
+quoted 'an expression of 10 MB' 'aaa.* cannot be understood' long.prm
+{ cat "$block" && echo 'subsection Output' &&
+  printf 'set Directory = ' && cat long && printf '\nend\n'; } >long.prm
+"$program" long.prm >stdout 2>stderr
+status=$?
+expect_sentence 'a directory of 10 MB' 'cannot be created'
+[ "$(wc -c <stderr)" -lt 700 ] || verdict 'a directory of 10 MB' ' is long'
+printf 'set \033[31mred\007 \377\302\233 = 1\n' >binary.prm
+quoted 'bytes that are no text' \
+  'entry .\\x1b\[31mred\\x07 \\xff\\xc2\\x9b.; did' binary.prm
+head -c 100000 "$program" >binary.prm
+quoted 'a file that is no text' 'binary.prm' binary.prm
+quoted 'an argument that is no text' 'override .\\x1b\[2Jx' "$block" \
+  "$(printf '\033[2Jx')"
+quoted 'a long argument' 'override .aaa.*aaa.: ' "$block" \
+  "$(head -c 100000 long)"
+quoted 'a long path' 'cannot read the scene file .aaa.*aaa.' \
+  "$(head -c 100000 long)"
+
+# Options.
+bad 'an option that does not exist' \
+  "'--foo' is no option; there are '--restart'" --foo
+bad 'an option that does not exist, after the scene' \
+  "'--restrat' is no option" "$block" --restrat
+bad 'an option that stands alone' "'--help' has to be" "$block" --help
+
 # Permissions do not stop root, but nobody can create a folder below a file.
 echo 'a file' >file
 "$program" "$block" Output/Directory=file/results >stdout 2>stderr

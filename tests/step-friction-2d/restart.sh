@@ -94,7 +94,8 @@ cp stdout whole.txt
 problem=
 [ $status -eq 0 ] || problem=" status $status"
 [ -d "whole/checkpoint-0$last" ] || problem="$problem no checkpoint"
-[ "$(find whole -name 'checkpoint*' -prune | wc -l)" -eq 1 ] ||
+[ -d "whole/checkpoint-0$((last - 1))" ] || problem="$problem only one"
+[ "$(find whole -name 'checkpoint*' -prune | wc -l)" -eq 2 ] ||
   problem="$problem old checkpoints"
 verdict 'a run that is left alone' "$problem"
 check_files 'files of a run that is left alone' whole
@@ -217,9 +218,21 @@ expect_sentence 'fewer levels' 'Refinement/Levels'
 run "$n" "$work/killed" --restart "Refinement/Levels=$((last + 1))" \
   'Contact/Friction coefficient=0.3'
 expect_sentence 'another problem' "'Contact/Friction coefficient' has changed"
+
+# One that is damaged is not read; the one before is there for that.
 echo damaged >"killed/checkpoint-0$((last + 1))/record"
 run "$n" "$work/killed" --restart "Refinement/Levels=$((last + 1))"
-expect_sentence 'damaged' 'cannot be read'
+problem=
+[ $status -eq 0 ] || problem=" status $status"
+grep -q "^Warning: .*checkpoint-0$((last + 1)).*'record'.*checkpoint-0$last" \
+  stdout || problem="$problem no warning"
+[ "$(table stdout | wc -l)" -eq $((last + 2)) ] || problem="$problem rows"
+verdict 'a damaged checkpoint' "$problem"
+for level in "$last" $((last + 1)); do
+  echo damaged >"killed/checkpoint-0$level/record"
+done
+run "$n" "$work/killed" --restart "Refinement/Levels=$((last + 1))"
+expect_sentence 'two damaged checkpoints' 'cannot be used'
 
 # A new run in the same directory begins with a clean slate.
 run "$n" "$work/killed" Refinement/Levels=0
