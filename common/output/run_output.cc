@@ -1,6 +1,7 @@
 #include <common/compatibility.h>
 #include <common/output/profile.h>
 #include <common/output/run_output.h>
+#include <common/parallel/collective_error.h>
 
 #include <boost/archive/binary_iarchive.hpp>
 #include <boost/archive/binary_oarchive.hpp>
@@ -59,6 +60,7 @@ namespace Friction
              scene.material(),
              scene.contact_boundary_id(),
              parameters.output.format)
+    , verification(directory)
     , checkpoints(directory, communicator)
   {
     if (!scene.warning().empty())
@@ -87,6 +89,12 @@ namespace Friction
     // belong.
     if (records.level.level == 0 && !restarted)
       checkpoints.remove_all();
+    on_first_process(communicator, [&]() {
+      if (records.level.level == 0 && !restarted)
+        verification.remove_all();
+      else
+        verification.remove(records.level.level);
+    });
 
     the_console.level_complete(records.level);
     if (!records.attempts.empty())
@@ -106,6 +114,9 @@ namespace Friction
                           displacement,
                           cell_errors.size() > 0 ? &cell_errors : nullptr},
                          records.own_contact);
+    if (parameters.output.verification)
+      verification.write_level(
+        records.level.level, discretization, displacement, records.own_contact);
   }
 
 
