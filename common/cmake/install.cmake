@@ -1,5 +1,6 @@
 # What cmake --install puts in place, below one prefix: both step programs, their
-# scenes, the library with its headers, and what find_package(friction) needs. Other
+# scenes, the program that verifies their results, the library with its headers, and
+# what find_package(friction) needs. Other
 # programs then link with friction::friction and include <common/...> as the steps
 # do.
 include(GNUInstallDirs)
@@ -21,6 +22,9 @@ set_target_properties(friction PROPERTIES
   SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 
 install(TARGETS step-friction-2d step-friction-3d)
+install(PROGRAMS tests/verify/friction_verify.py
+  DESTINATION ${CMAKE_INSTALL_BINDIR}
+  RENAME friction-verify)
 install(TARGETS friction EXPORT friction-targets
   INCLUDES DESTINATION ${_headers})
 install(DIRECTORY common DESTINATION ${_headers}
