@@ -22,9 +22,6 @@ set_target_properties(friction PROPERTIES
   SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 
 install(TARGETS step-friction-2d step-friction-3d)
-install(PROGRAMS tests/verify/friction_verify.py
-  DESTINATION ${CMAKE_INSTALL_BINDIR}
-  RENAME friction-verify)
 install(TARGETS friction EXPORT friction-targets
   INCLUDES DESTINATION ${_headers})
 install(DIRECTORY common DESTINATION ${_headers}
@@ -34,6 +31,16 @@ foreach(_step step-friction-2d step-friction-3d)
   install(DIRECTORY ${_step}/scenes
     DESTINATION ${CMAKE_INSTALL_DATADIR}/friction/${_step})
 endforeach()
+
+set(_verify ${CMAKE_INSTALL_DATADIR}/friction/verify)
+file(RELATIVE_PATH _to_verify
+  ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_DATADIR}/friction/verify)
+configure_file(common/cmake/friction-verify.in
+  ${PROJECT_BINARY_DIR}/friction-verify @ONLY)
+install(PROGRAMS ${PROJECT_BINARY_DIR}/friction-verify
+  DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY tests/verify/ DESTINATION ${_verify}
+  FILES_MATCHING PATTERN "*.py" PATTERN refute.py EXCLUDE)
 
 install(EXPORT friction-targets NAMESPACE friction:: DESTINATION ${_package})
 configure_package_config_file(common/cmake/friction-config.cmake.in

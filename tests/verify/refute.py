@@ -15,7 +15,11 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
-import friction_verify as verifier  # noqa: E402
+from checks import verify_level  # noqa: E402
+from expressions import Expression, NotUnderstood  # noqa: E402
+from friction_verify import tolerance_of  # noqa: E402
+from run_data import Level, read_history  # noqa: E402
+from scene_text import SceneText  # noqa: E402
 
 PROGRAMS, ROOT = [Path(p).resolve() for p in sys.argv[1:3]], Path(sys.argv[3]).resolve()
 VERIFY = Path(__file__).with_name("friction_verify.py").resolve()
@@ -65,17 +69,17 @@ class Case:
 
     def __init__(self, name, directory, which=-1):
         self.name = name
-        text, levels = verifier.read_history(directory)
+        text, levels = read_history(directory)
         self.row = levels[which]
         path = directory / f"verify-{self.row['level']:02d}.h5"
-        self.level = verifier.Level(path)
-        self.scene = verifier.SceneText(text, self.level.dim)
-        self.tolerance = verifier.tolerance_of(self.scene, self.row)
+        self.level = Level(path)
+        self.scene = SceneText(text, self.level.dim)
+        self.tolerance = tolerance_of(self.scene, self.row)
 
     def verdict(self, change):
         level, row = copy.deepcopy(self.level), dict(self.row)
         change(level, row)
-        return verifier.verify_level(level, row, self.scene, self.tolerance)[0]
+        return verify_level(level, row, self.scene, self.tolerance)[0]
 
     def expect(self, what, change, columns=()):
         """That the change is refuted, in one of these columns at least."""
@@ -97,7 +101,7 @@ def check_displacements(case):
             level.displacement.flat[i] += step
         if not case.verdict(change).complaints:
             missed.append(i)
-    report(not missed, f"{case.name}: {len(tried)} of {u.size} displacements, one by one",
+    report(not missed, f"{case.name}: {len(tried)} of {u.size} displacements",
            f"missed {missed}")
 
 
@@ -303,7 +307,7 @@ def check_sloppy(work):
     report(status == 0, "sloppy: by its own standard", out)
     status, out, _ = verify(directory, "--tolerance", "1e-6")
     report(status == 1, "sloppy: by ours", out)
-    _, levels = verifier.read_history(directory)
+    _, levels = read_history(directory)
     for i, row in enumerate(levels):
         verdict = Case("sloppy", directory, i).verdict(lambda *_: None)
         report(abs(verdict.certificate - row["certificate"])
@@ -332,13 +336,13 @@ def check_expressions():
             ("if(x > 0, d, -d^2)", [2.5, -4.]), ("max(x, y, 0)*2/4", [1., .15]),
             ("x < y && x > 0 ? 1 : a", [1., 3.]), ("1 - 2 - 3", -4.),
             ("(x <= 0.5) + (y == 2)", [2., 1.]), ("2^-1", .5)):
-        got = verifier.Expression(text, names).value()
+        got = Expression(text, names).value()
         report(np.allclose(got, value), f"expression {text}", f"{got}")
     for text in ("1 +", "f(x)", "2 2", "(x", "x $ y", ""):
         try:
-            verifier.Expression(text, names).value()
+            Expression(text, names).value()
             report(False, f"expression {text}", "is no expression")
-        except verifier.NotUnderstood:
+        except NotUnderstood:
             report(True, f"expression '{text}' is none")
 
 
