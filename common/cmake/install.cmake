@@ -40,7 +40,7 @@ configure_file(common/cmake/friction-verify.in
 install(PROGRAMS ${PROJECT_BINARY_DIR}/friction-verify
   DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY tests/verify/ DESTINATION ${_verify}
-  FILES_MATCHING PATTERN "*.py" PATTERN refute.py EXCLUDE)
+  FILES_MATCHING PATTERN "*.py" PATTERN refute.py EXCLUDE PATTERN all_scenes.py EXCLUDE)
 
 install(EXPORT friction-targets NAMESPACE friction:: DESTINATION ${_package})
 configure_package_config_file(common/cmake/friction-config.cmake.in
