@@ -1,5 +1,6 @@
 # What cmake --install puts in place, below one prefix: both step programs, their
-# scenes, the library with its headers, and what find_package(friction) needs. Other
+# scenes, the program that verifies their results, the library with its headers, and
+# what find_package(friction) needs. Other
 # programs then link with friction::friction and include <common/...> as the steps
 # do.
 include(GNUInstallDirs)
@@ -30,6 +31,16 @@ foreach(_step step-friction-2d step-friction-3d)
   install(DIRECTORY ${_step}/scenes
     DESTINATION ${CMAKE_INSTALL_DATADIR}/friction/${_step})
 endforeach()
+
+set(_verify ${CMAKE_INSTALL_DATADIR}/friction/verify)
+file(RELATIVE_PATH _to_verify
+  ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_DATADIR}/friction/verify)
+configure_file(common/cmake/friction-verify.in
+  ${PROJECT_BINARY_DIR}/friction-verify @ONLY)
+install(PROGRAMS ${PROJECT_BINARY_DIR}/friction-verify
+  DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY tests/verify/ DESTINATION ${_verify}
+  FILES_MATCHING PATTERN "*.py" PATTERN refute.py EXCLUDE PATTERN all_scenes.py EXCLUDE)
 
 install(EXPORT friction-targets NAMESPACE friction:: DESTINATION ${_package})
 configure_package_config_file(common/cmake/friction-config.cmake.in

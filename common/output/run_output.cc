@@ -63,6 +63,7 @@ namespace Friction
              scene.material(),
              scene.contact_boundary_id(),
              parameters.output.format)
+    , verification(directory)
     , checkpoints(directory, communicator)
   {}
 
@@ -114,6 +115,9 @@ namespace Friction
     any_level           = true;
     if (is_first && !restarted)
       remove_other_run();
+    // Not that of another run, if this one writes none.
+    on_first_process(communicator,
+                     [&]() { verification.remove(records.level.level); });
 
     the_console.level_complete(records.level);
     if (!records.attempts.empty())
@@ -133,6 +137,9 @@ namespace Friction
                           displacement,
                           cell_errors.size() > 0 ? &cell_errors : nullptr},
                          records.own_contact);
+    if (parameters.output.verification)
+      verification.write_level(
+        records.level.level, discretization, displacement, records.own_contact);
     if (is_first && restarted)
       remove_levels_after(records.level.level);
   }

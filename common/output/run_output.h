@@ -11,6 +11,7 @@
 #include <common/output/left_overs.h>
 #include <common/output/level_records.h>
 #include <common/output/run_directory.h>
+#include <common/output/verification_data.h>
 #include <common/scene/scene.h>
 
 #include <functional>
@@ -22,8 +23,8 @@ namespace Friction
 {
   /**
    * All that a run puts out: the table on the console, `history.h5`, the fields
-   * for ParaView, and checkpoints. Which of these are wanted, the parameters
-   * say.
+   * for ParaView, what friction-verify reads, and checkpoints. Which of these
+   * are wanted, the parameters say.
    *
    * Unless stated otherwise, functions are collective operations, and an error
    * of one process is that of all.
@@ -138,12 +139,13 @@ namespace Friction
     const Parameters parameters;
     const MPI_Comm   communicator;
 
-    RunDirectory     directory;
-    DirectoryLock    lock;
-    Console          the_console;
-    History<dim>     history;
-    FieldWriter<dim> fields;
-    Checkpoints      checkpoints;
+    RunDirectory          directory;
+    DirectoryLock         lock;
+    Console               the_console;
+    History<dim>          history;
+    FieldWriter<dim>      fields;
+    VerificationData<dim> verification;
+    Checkpoints           checkpoints;
 
     double last_exact_error = 0.;
     bool   restarted        = false;

@@ -449,6 +449,13 @@ namespace Friction
        "the run: continued with more levels, a run solves its last level once "
        "more and goes on."},
       {"Output",
+       "Verification",
+       "false",
+       flag,
+       "Whether to write for each level what friction-verify, a program that "
+       "shares no code with this one, needs to recompute its residual and the "
+       "discrete law: verify-NN.h5."},
+      {"Output",
        "Times",
        "true",
        flag,

@@ -881,12 +881,13 @@ namespace Friction
       output.format =
         (values.get("Output/Format") == "vtu" ? FieldFormat::vtu
                                               : FieldFormat::hdf5);
-      output.checkpoint = values.flag("Output/Checkpoint");
-      output.times      = values.flag("Output/Times");
-      output.profile    = values.flag("Output/Profile");
-      output.verbosity  = (verbosity == "quiet"      ? Verbosity::quiet
-                             : verbosity == "levels" ? Verbosity::levels
-                                                     : Verbosity::cycles);
+      output.checkpoint   = values.flag("Output/Checkpoint");
+      output.verification = values.flag("Output/Verification");
+      output.times        = values.flag("Output/Times");
+      output.profile      = values.flag("Output/Profile");
+      output.verbosity    = (verbosity == "quiet"      ? Verbosity::quiet
+                               : verbosity == "levels" ? Verbosity::levels
+                                                       : Verbosity::cycles);
       if (output.directory.empty())
         throw InputError(values.subject("Output/Directory") +
                          " is empty; name a directory.");

@@ -194,12 +194,13 @@ namespace Friction
     struct Output
     {
       std::string directory;
-      bool        fields     = true;
-      FieldFormat format     = FieldFormat::vtu;
-      bool        checkpoint = false; ///< one after each level
-      bool        times      = true;  ///< print what depends on the clock
-      bool        profile    = false; ///< print what the solver has cost
-      Verbosity   verbosity  = Verbosity::cycles;
+      bool        fields       = true;
+      FieldFormat format       = FieldFormat::vtu;
+      bool        checkpoint   = false; ///< one after each level
+      bool        verification = false; ///< write what friction-verify reads
+      bool        times        = true;  ///< print what depends on the clock
+      bool        profile      = false; ///< print what the solver has cost
+      Verbosity   verbosity    = Verbosity::cycles;
     };
 
     /// What is strange about the scene but no error: entries that it does not

@@ -28,6 +28,22 @@ namespace Friction
     /// which it can be met.
     static constexpr double flattest_cosine = .05;
 
+    /// The half space on that side of the plane to which the normal points.
+    struct Plane
+    {
+      Point<dim>     point;
+      Tensor<1, dim> normal; ///< a unit vector
+    };
+
+    /// A rod, in two dimensions a disc.
+    struct Rod
+    {
+      Point<dim>     center;
+      Tensor<1, dim> axis; ///< a unit vector; zero in two dimensions
+      double         radius;
+      double         length; ///< may be infinite
+    };
+
     /// No obstacle at all.
     Obstacle() = default;
 
@@ -80,6 +96,19 @@ namespace Friction
     empty() const
     {
       return planes.empty() && rods.empty();
+    }
+
+    /// Of what it consists.
+    const std::vector<Plane> &
+    half_spaces() const
+    {
+      return planes;
+    }
+
+    const std::vector<Rod> &
+    circular_rods() const
+    {
+      return rods;
     }
 
     /**
@@ -159,19 +188,6 @@ namespace Friction
     }
 
   private:
-    struct Plane
-    {
-      Point<dim>     point;
-      Tensor<1, dim> normal;
-    };
-
-    struct Rod
-    {
-      Point<dim>     center;
-      Tensor<1, dim> axis;
-      double         radius;
-      double         length;
-    };
 
     /// The part of a vector perpendicular to the axis of a rod.
     static Tensor<1, dim>

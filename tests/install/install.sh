@@ -1,7 +1,8 @@
 #!/bin/sh
 # What is installed works on its own: a program of thirty lines is built against it
 # in an empty place and solves a scene, and the installed step program says which
-# version it is and solves the same scene with the same result.
+# version it is and solves the same scene with the same result, and the installed
+# program that verifies runs confirms it.
 #
 # Usage: install.sh CMAKE BUILD_TREE PROGRAM_SOURCES CXX_COMPILER VERSION
 cmake=$1
@@ -45,6 +46,16 @@ esac
 
 # The fourth and fifth column of the only row: contact, sticky.
 row=$(cd "$work" && "$step" "$scene" "Refinement/Initial refinements=4" \
-  Refinement/Levels=0 Output/Times=false | awk '$1 == 0 {print $4, $5}')
+  Refinement/Levels=0 Output/Times=false Output/Directory=run \
+  Output/Verification=true | awk '$1 == 0 {print $4, $5}')
 [ "$outside" = "${row% *} nodes in contact, ${row#* } of them stick, solved" ] ||
   fail "the step program finds $row"
+
+# Without h5py it says in one sentence what is missing.
+said=$("$work/prefix/bin/friction-verify" "$work/run" 2>&1)
+status=$?
+echo "$said" | tail -1
+case $status,$said in
+0,*"is confirmed on 1 level."* | 2,*"has no module"*) ;;
+*) fail "the installed program does not confirm the run" ;;
+esac

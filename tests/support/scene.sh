@@ -4,7 +4,8 @@
 # files. Numbers of cycles are only compared with a bound, and rates not at all:
 # they depend on the order of nodes and on rounding. The numbers in history.h5 of
 # several processes are compared with those that one process has left in
-# RESULTS-1, energies to ten digits.
+# RESULTS-1, energies to ten digits. A program that shares no code with the one that
+# is run, tests/verify/friction_verify.py, confirms the certificate of every level.
 #
 # Usage: scene.sh PROGRAM SCENE EXPECTED RESULTS N CYCLES NUMDIFF COMPARE MPIEXEC NUMPROC_FLAG
 program=$1
@@ -25,10 +26,11 @@ work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 
 if [ "$n" -eq 1 ]; then
-  "$program" "$scene" "Output/Directory=$results" >"$work/output" 2>&1
+  "$program" "$scene" "Output/Directory=$results" Output/Verification=true \
+    >"$work/output" 2>&1
 else
   "$mpiexec" "$numproc_flag" "$n" "$program" "$scene" \
-    "Output/Directory=$results" >"$work/output" 2>&1
+    "Output/Directory=$results" Output/Verification=true >"$work/output" 2>&1
 fi
 status=$?
 cat "$work/output"
@@ -67,4 +69,14 @@ fi
 
 if [ "$n" -ne 1 ]; then
   "$compare" "$alone/history.h5" "$results/history.h5" "$n" || exit 1
+fi
+
+# Some python that can read what has been written.
+for python in python3 /usr/bin/python3 none; do
+  "$python" -c 'import h5py, numpy' 2>/dev/null && break
+done
+if [ "$python" = none ]; then
+  echo "not verified: there is no python3 with h5py"
+else
+  "$python" -B "$(dirname "$0")/../verify/friction_verify.py" "$results" || exit 1
 fi

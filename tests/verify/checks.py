@@ -1,0 +1,257 @@
+"""What must hold of a level, one function after the other. Each gets a Verdict, what
+has been recomputed, and the tolerance; reported are the numbers of the level in
+history.h5 by name, under 'contact' those of the contact nodes."""
+
+import numpy as np
+
+from recomputed import Recomputed
+from scene_check import compare_with_scene
+from verdict import ROUNDING, Verdict, relative
+
+
+def verify_level(level, reported, scene, tolerance):
+    """level: a Level; scene: a SceneText. Returns a Verdict, and a list of what could
+    not be compared with the scene."""
+    verdict, found = Verdict(), Recomputed(level)
+    exact = min(tolerance, ROUNDING)
+    check_hanging_nodes(verdict, found, exact)
+    check_prescribed_values(verdict, found, exact)
+    check_normals(verdict, found, exact)
+    check_equilibrium(verdict, found, tolerance)
+    check_contact(verdict, found, tolerance)
+    check_friction(verdict, found, tolerance)
+    check_states(verdict, found, tolerance)
+    check_certificate(verdict, found, reported, tolerance)
+    check_reported_numbers(verdict, found, reported, tolerance)
+    check_reported_nodes(verdict, found, reported, tolerance)
+    return verdict, compare_with_scene(verdict, level, scene, found.hanging, exact)
+
+
+# What is given.
+
+
+def check_hanging_nodes(verdict, found, exact):
+    """They are those of the mesh, and where their masters have them."""
+    level, u, written = found.level, found.u, {}
+    for (node, master), weight in zip(level.hanging_nodes.tolist(),
+                                      level.hanging_weights):
+        masters = written.setdefault(node, {})
+        masters[master] = masters.get(master, 0.) + weight
+    same = written.keys() == found.hanging.keys() and all(
+        written[node].keys() == masters.keys()
+        and all(abs(written[node][m] - w) < ROUNDING for m, w in masters.items())
+        for node, masters in found.hanging.items())
+    verdict.demand(same, "hanging nodes are not those of the mesh, or their masters")
+    distances = np.array([
+        np.abs(sum(w * u[m] for m, w in masters.items()) - u[node]).max()
+        for node, masters in found.hanging.items()])
+    verdict.check("given", distances / found.largest_u, exact,
+                  "a hanging node is not where its masters have it",
+                  level.vertices[list(found.hanging)])
+
+
+def check_prescribed_values(verdict, found, exact):
+    level = found.level
+    held = level.is_prescribed.any(axis=1)
+    verdict.demand(not np.any(held & found.is_hanging),
+                   "the displacement of a hanging node is prescribed")
+    differences = np.where(level.is_prescribed, np.abs(found.u - level.values), 0)
+    verdict.check("given", differences[held] / found.largest_u, exact,
+                  "a displacement is not the prescribed one", level.vertices[held])
+    prescribed = level.is_prescribed[level.contact_nodes]
+    verdict.check("given", np.abs(level.contact_normals)[prescribed], exact,
+                  "the normal displacement of a contact node is prescribed")
+
+
+def left_out(found):
+    """Which nodes of the contact boundary neither hang, nor are held, nor are contact
+    nodes."""
+    result = np.zeros(found.level.n_nodes, bool)
+    result[found.boundary.nodes] = True
+    result &= ~found.is_hanging & ~found.level.is_prescribed.all(axis=1)
+    result[found.level.contact_nodes] = False
+    return result
+
+
+def check_normals(verdict, found, exact):
+    """Contact nodes are on the contact boundary, and their normals are unit vectors
+    straight to the obstacle, or not far from those of the faces around the node: no
+    farther than the boundary turns there, and a degree. More the mesh does not know of
+    a boundary that is round."""
+    level, boundary = found.level, found.boundary
+    nodes, normals = level.contact_nodes, level.contact_normals
+    verdict.demand(boundary.problem is None, boundary.problem)
+    verdict.demand(set(nodes) <= set(boundary.nodes) and len(set(nodes)) == len(nodes)
+                   and not np.any(found.is_hanging[nodes]),
+                   "a contact node is none of the contact boundary")
+    verdict.demand(np.all(np.isfinite(found.gap)),
+                   "a contact node cannot meet the obstacle")
+    verdict.check("given", np.abs(np.linalg.norm(normals, axis=1) - 1), exact,
+                  "a normal is no unit vector", found.x)
+    if level.contact_normal == "obstacle":
+        _, towards = level.obstacle.nearest(found.x)
+        verdict.check("given", np.abs(normals - towards).max(axis=1, initial=0), exact,
+                      "a normal does not point straight to the obstacle", found.x)
+    else:
+        cosines = np.clip(np.sum(normals * boundary.normal[nodes], axis=1), -1, 1)
+        turns = np.array([boundary.turn.get(node, 0) for node in nodes])
+        verdict.demand(np.all(np.degrees(np.arccos(cosines)) <= turns + 1),
+                       "a normal points away from those of the faces around its node")
+
+
+# The law.
+
+
+def unbalanced(found):
+    """Forces at nodes and in directions that nothing holds (nodes x dim), relative."""
+    level = found.level
+    free = ~level.is_prescribed & ~found.is_hanging[:, None]
+    free[level.contact_nodes] = False
+    return np.abs(np.where(free, found.r, 0)) / found.force
+
+
+def pulling(found):
+    return np.maximum(-found.pressing, 0) / found.force
+
+
+def at_distance(found, length):
+    """Of force and distance the smaller one."""
+    return np.maximum(np.minimum(found.pressing / found.force, found.room / length), 0)
+
+
+def beyond_cone(found):
+    return np.maximum(found.drag - found.bound, 0) / found.force
+
+
+def wrong_slip(found, length):
+    """A node has not moved, or friction acts against its slip with full strength: of
+    the two violations the smaller one."""
+    full = found.bound[:, None] * found.direction
+    deviation = np.linalg.norm(found.r_T - full, axis=1) / found.force
+    return np.where(found.can_slide, np.minimum(deviation, found.slip / length), 0)
+
+
+def check_equilibrium(verdict, found, tolerance):
+    verdict.check("equilibrium", unbalanced(found), tolerance,
+                  "there is a force where nothing holds the body",
+                  found.level.vertices)
+
+
+def check_contact(verdict, found, tolerance):
+    """No penetration, no tension, no force at a distance. Nodes that are left out,
+    since they cannot meet the obstacle along their normals, must not be in it."""
+    level, x = found.level, found.x
+    verdict.check("penetration", np.maximum(-found.room, 0) / found.length, tolerance,
+                  "a node is inside of the obstacle", x)
+    others = left_out(found)
+    places = level.vertices[others]
+    depths = level.obstacle.depth(places + found.u[others])
+    verdict.check("penetration", depths / found.length, tolerance,
+                  "a node that is left out is inside of the obstacle", places)
+    verdict.check("tension", pulling(found), tolerance, "the obstacle pulls", x)
+    verdict.check("tension", at_distance(found, found.length), tolerance,
+                  "the obstacle pushes from a distance", x)
+
+
+def check_friction(verdict, found, tolerance):
+    verdict.check("cone", beyond_cone(found), tolerance, "friction is beyond its bound",
+                  found.x)
+    verdict.check("slip", wrong_slip(found, found.length), tolerance,
+                  "friction does not oppose the slip as it should", found.x)
+
+
+def check_states(verdict, found, tolerance):
+    """Nodes do what they are said to do. The law alone does not tell: a node that has
+    not moved may stick, or be about to slide."""
+    x, state = found.x, found.level.contact_states
+    opens, slides, sticks = (state == s for s in (0, 1, 2))
+    verdict.demand(np.all(opens | slides | sticks), "a contact node has no known state",
+                   "states")
+    verdict.check("states", np.where(opens, np.abs(found.pressing), 0) / found.force,
+                  tolerance, "there is a force at a node that is said to be open", x)
+    verdict.check("states", np.where(opens, 0, np.abs(found.room)) / found.length,
+                  tolerance, "a node that is said to touch does not", x)
+    verdict.check("states", np.where(sticks, found.slip, 0) / found.length, tolerance,
+                  "a node that is said to stick has moved", x)
+    verdict.demand(found.level.friction_law != "none" or not np.any(sticks),
+                   "a node is said to stick, and there is no friction", "states")
+    # A prescribed component of the slip leaves but a share of the bound to the others.
+    share = np.where(found.slip > tolerance * found.length,
+                     np.linalg.norm(found.direction, axis=1), 1)
+    missing = np.where(slides & found.can_slide, found.bound * share - found.drag, 0)
+    verdict.check("states", np.maximum(missing, 0) / found.force, tolerance,
+                  "a node that is said to slide bears less friction than it can", x)
+
+
+# What is reported.
+
+
+def check_certificate(verdict, found, reported, tolerance):
+    """By its own definition."""
+    length, said = found.wide_length, reported["certificate"]
+    verdict.certificate = max(np.max(part, initial=0) for part in (
+        unbalanced(found), -found.room / length, pulling(found),
+        at_distance(found, length), beyond_cone(found), wrong_slip(found, length)))
+    verdict.check(None, max(verdict.certificate - said, 0), .1 * tolerance,
+                  f"the certificate is reported to be {said:.1e} and is "
+                  f"{verdict.certificate:.1e}, which is more by")
+
+
+def check_reported_numbers(verdict, found, reported, tolerance):
+    """Of the level. Forces and stresses are compared with no less than those of
+    rounding."""
+    level, measure = found.level, found.measure
+    touches, sticks = level.contact_states > 0, level.contact_states == 2
+    friction = np.sum(found.bound * found.slip)
+    energy = found.strain_energy - found.work + friction
+    parts = max(found.strain_energy + abs(found.work) + friction,
+                found.rounding * found.largest_u) or 1.
+    verdict.check("energy", abs(energy - reported["energy"]) / parts, tolerance,
+                  "the reported energy is wrong")
+    for name, number in (("cells", len(level.cells)),
+                         ("dofs", level.dim * level.n_nodes),
+                         ("contact_nodes", touches.sum()),
+                         ("sticky_nodes", sticks.sum())):
+        verdict.demand(reported[name] == number, f"{name} is reported to be "
+                       f"{reported[name]:.0f} and is {number}", "states")
+
+    def half_width(nodes):
+        area = measure[nodes].sum()
+        return area / 2 if level.dim == 2 else np.sqrt(area / np.pi)
+
+    total = found.pressing[touches].sum()
+    pressure = np.max((found.pressing / measure)[touches], initial=0)
+    tangential = np.linalg.norm(found.r_T.sum(axis=0))
+    for name, number, least in (
+            ("normal_force", total, found.rounding),
+            ("tangential_force", tangential,
+             max(np.sum(found.drag), total, found.rounding)),
+            ("max_pressure", pressure, found.rounding / measure.min(initial=np.inf)),
+            ("contact_half_width", half_width(touches), 0),
+            ("stick_half_width", half_width(sticks), 0)):
+        verdict.check(None, relative(number, reported[name], least), tolerance,
+                      f"{name} is reported to be {reported[name]:.6g} and is "
+                      f"{number:.6g}")
+
+
+def check_reported_nodes(verdict, found, reported, tolerance):
+    """The contact nodes in history.h5, which have an order of their own. A force on the
+    body is -r, without what prescribed displacements take."""
+    level, records = found.level, reported.get("contact", {})
+    n = len(records.get("point", []))
+    verdict.demand(n == len(level.contact_nodes),
+                   f"history.h5 has {n} contact nodes of {len(level.contact_nodes)}")
+    if n != len(level.contact_nodes) or n == 0:
+        return
+    order = np.lexsort(found.x.T[::-1])
+    theirs = np.lexsort(records["point"].T[::-1])
+    force = -found.pressing[:, None] * level.contact_normals - found.r_T
+    for name, values in (
+            ("point", found.x), ("normal", level.contact_normals),
+            ("displacement", found.u_c), ("gap", found.gap),
+            ("measure", found.measure), ("state", level.contact_states)):
+        verdict.check("given", relative(values[order], records[name][theirs]), ROUNDING,
+                      f"'{name}' of contact nodes in history.h5 is wrong")
+    difference = relative(force[order], records["force"][theirs], found.rounding)
+    verdict.check(None, difference, tolerance,
+                  "'force' of contact nodes in history.h5 is wrong")

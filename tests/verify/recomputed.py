@@ -1,0 +1,95 @@
+"""Forces and gaps of a displacement."""
+
+import numpy as np
+
+from contact_boundary import ContactBoundary
+from hanging_nodes import find_hanging_nodes
+from nodal_forces import body_integrals, nodal_loads
+
+
+class Recomputed:
+    """What follows from the mesh, the displacement u and the loads f of a level.
+
+    With the stiffness A of bilinear or trilinear elements the residual is r = f - A u.
+    It is condensed: what a hanging node gets, its masters get. The force that holds the
+    body at a node, that of the obstacle for example, is R = A u - f = -r. So r . n is
+    what presses at a contact node, n being the normal towards the obstacle, and r_T is
+    what friction has to bear against.
+
+    Of all nodes: u, r (nodes x dim), is_hanging, hanging (see find_hanging_nodes()).
+    Of contact nodes, in the order of contact_nodes:
+
+    x, u_c       points and displacements (k x dim)
+    gap, room    distance of the obstacle along the normal, before and after
+    pressing     normal force, positive where the obstacle pushes
+    u_T, slip    tangential displacement (k x dim) and its length
+    r_T, drag    tangential residual (k x dim) without directions in which the
+                 displacement is prescribed, whose force is a reaction; its length
+    can_slide    whether a tangential direction is left free
+    bound        largest friction: F times the normal force, or what is given
+    direction    unit vector of the slip, without prescribed directions; zero at rest
+    measure      of the boundary that belongs to the node
+    """
+
+    def __init__(self, level):
+        self.level, self.u = level, level.displacement
+        self.hanging = find_hanging_nodes(level)
+        self.is_hanging = np.zeros(level.n_nodes, bool)
+        self.is_hanging[list(self.hanging)] = True
+
+        internal, self.strain_energy, diagonal = body_integrals(level)
+        loads = nodal_loads(level, level.body_force, level.traction_faces,
+                            level.tractions)
+        self.work = np.sum(loads * self.u)
+        self.r = loads - internal
+        for node, masters in self.hanging.items():
+            for master, weight in masters.items():
+                self.r[master] += weight * self.r[node]
+            self.r[node] = 0
+
+        self.boundary = ContactBoundary(level, self.hanging)
+        self._look_at_contact_nodes()
+        self._find_scales(diagonal)
+
+    def _look_at_contact_nodes(self):
+        level, nodes, normals = (self.level, self.level.contact_nodes,
+                                 self.level.contact_normals)
+        prescribed = level.is_prescribed[nodes]
+        self.x, self.u_c, r_c = level.vertices[nodes], self.u[nodes], self.r[nodes]
+        self.gap = level.obstacle.gap(self.x, normals)
+        u_n = np.sum(self.u_c * normals, axis=1)
+        self.room = self.gap - u_n
+        self.pressing = np.sum(r_c * normals, axis=1)
+
+        self.u_T = self.u_c - u_n[:, None] * normals
+        self.r_T = r_c - self.pressing[:, None] * normals
+        self.r_T = np.where(prescribed, 0, self.r_T)
+        self.can_slide = (~prescribed).sum(axis=1) > 1
+        self.slip = np.linalg.norm(self.u_T, axis=1)
+        self.drag = np.linalg.norm(self.r_T, axis=1)
+        self.direction = self.u_T / np.where(self.slip > 0, self.slip, 1)[:, None]
+        self.direction = np.where(prescribed, 0, self.direction)
+
+        self.measure = self.boundary.measure[nodes]
+        self.bound = np.zeros(len(nodes))
+        if level.friction_law == "Coulomb":
+            self.bound = level.friction_coefficient * np.maximum(self.pressing, 0)
+        elif level.friction_law == "Tresca":
+            self.bound = level.friction_bounds * self.measure
+
+    def _find_scales(self, diagonal):
+        """diagonal: traces of the diagonal blocks of A, with hanging nodes not yet
+        condensed, which is good enough here."""
+        self.largest_u = np.abs(self.u).max() or 1.
+
+        # What is left of the force that the displacement of one node alone would cause,
+        # if the others cancel it: where a body merely moves all forces are rounding
+        # errors.
+        self.rounding = 1e-8 * np.max(diagonal * np.linalg.norm(self.u, axis=1)
+                                      * ~self.is_hanging)
+        self.force = max(np.abs(self.r).max(), self.rounding) or 1.
+        self.length = np.abs(self.u_c).max(initial=0) or self.largest_u
+        # That of the certificate. Where a boundary is round the largest gap is that of
+        # a node far off, and no measure of what happens in contact.
+        self.wide_length = max(np.abs(self.u_c).max(initial=0),
+                               np.abs(self.room).max(initial=0)) or 1.

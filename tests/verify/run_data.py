@@ -1,0 +1,106 @@
+"""What a run has written: verify-NN.h5 and history.h5."""
+
+import h5py
+import numpy as np
+
+from obstacle import Obstacle
+
+
+class NotReadable(Exception):
+    """One sentence that says what cannot be read."""
+
+
+class Level:
+    """What verify-NN.h5 holds, under the names that it has there."""
+
+    def __init__(self, path):
+        sentence = (f"'{path}' cannot be read: it is no file that "
+                    "'Output/Verification' makes, or damaged.")
+        try:
+            with h5py.File(path) as file:
+                for name in ("dimension", "level", "youngs_modulus", "poisson_ratio",
+                             "volumetric_strain", "contact_boundary", "contact_normal",
+                             "friction_law", "friction_coefficient"):
+                    setattr(self, name, file.attrs[name])
+                data = {name: item[()] for name, item in file.items()}
+            self._take(data)
+        except (OSError, KeyError, ValueError, IndexError) as error:
+            raise NotReadable(sentence) from error
+
+    def _take(self, data):
+        """Raises KeyError, ValueError or IndexError where data do not fit together."""
+        self.dim = dim = int(self.dimension)
+        self.n_nodes = n = len(data["vertices"])
+
+        def rows(name, columns, kind=float):
+            empty = np.zeros((0, columns) if columns > 1 else 0)
+            values = np.asarray(data.get(name, empty)).astype(kind)
+            if values.shape[1:] != empty.shape[1:]:
+                raise ValueError(name)
+            return values
+
+        def nodes(name, columns):
+            values = rows(name, columns, int)
+            if values.size and values.max() >= n:
+                raise IndexError(name)
+            return values
+
+        self.vertices = rows("vertices", dim)
+        self.displacement = rows("displacement", dim)
+        self.cells = nodes("cells", 2**dim)
+        self.boundary_faces = nodes("boundary_faces", 2**(dim - 1))
+        self.boundary_ids = rows("boundary_ids", 1, int)
+        self.hanging_nodes = nodes("hanging_nodes", 2)
+        self.hanging_weights = rows("hanging_weights", 1)
+        self.prescribed = nodes("prescribed", 2)
+        self.prescribed_values = rows("prescribed_values", 1)
+        self.body_force = data.get("body_force")
+        self.traction_faces = nodes("traction_faces", 2**(dim - 1))
+        self.tractions = rows("tractions", dim)
+        self.contact_nodes = nodes("contact_nodes", 1)
+        self.contact_normals = rows("contact_normals", dim)
+        self.contact_states = rows("contact_states", 1, int)
+        self.friction_bounds = data.get("friction_bounds")
+        self.obstacle = Obstacle(
+            list(zip(rows("plane_points", dim), rows("plane_normals", dim))),
+            [(c, a, r, length if length > 0 else np.inf) for c, a, r, length in zip(
+                rows("rod_centers", dim), rows("rod_axes", dim), rows("rod_radii", 1),
+                rows("rod_lengths", 1))])
+        k = len(self.contact_nodes)
+        if (len(self.displacement) != n
+                or len(self.boundary_faces) != len(self.boundary_ids)
+                or len(self.hanging_nodes) != len(self.hanging_weights)
+                or len(self.tractions) != 4**(dim - 1) * len(self.traction_faces)
+                or len(self.contact_normals) != k or len(self.contact_states) != k
+                or (self.friction_law == "Tresca" and k > 0
+                    and np.shape(self.friction_bounds) != (k,))
+                or (self.body_force is not None and
+                    self.body_force.shape != (2**dim * len(self.cells), dim))):
+            raise ValueError("rows")
+
+        # Whether a component of a node is prescribed, and its value (nodes x dim).
+        self.is_prescribed = np.zeros((n, dim), bool)
+        self.values = np.zeros((n, dim))
+        self.is_prescribed[tuple(self.prescribed.T)] = True
+        self.values[tuple(self.prescribed.T)] = self.prescribed_values
+
+
+def read_history(directory):
+    """The parameters, and for each level a dictionary of its numbers."""
+    path = directory / "history.h5"
+    if not path.is_file():
+        raise NotReadable(f"there is no '{path}'; name the output directory of a run.")
+    try:
+        with h5py.File(path) as file:
+            text = file.attrs["parameters"]
+            columns = {name: item[()] for name, item in file["levels"].items()}
+            levels = [{name: column[i] for name, column in columns.items()}
+                      for i in range(len(columns["level"]))]
+            for row in levels:
+                group = file.get(f"contact/level_{row['level']:02d}")
+                if group is not None:
+                    row["contact"] = {name: item[()] for name, item in group.items()}
+    except (OSError, KeyError) as error:
+        raise NotReadable(f"'{path}' cannot be read: it is damaged, or of another "
+                          "version.") from error
+    return text if isinstance(text, str) else text.decode(), levels

@@ -1,0 +1,102 @@
+"""Whether a run has solved what its scene says."""
+
+import numpy as np
+
+from expressions import NotUnderstood, split
+from nodal_forces import nodal_loads
+from unit_cell import corner_functions, gauss_points
+from verdict import relative
+
+
+def compare_with_scene(verdict, level, scene, hanging, limit):
+    """Whether the run has solved what its scene says. Returns entries that are beyond
+    this program."""
+    dim, X, unknown = level.dim, level.vertices, []
+
+    def attempt(entry, compare):
+        try:
+            compare()
+        except NotUnderstood as error:
+            unknown.append(f"'{entry}' ({error})")
+
+    def same(entry, mine, theirs):
+        verdict.check("given", relative(mine, theirs), limit,
+                      f"'{entry}' is not what the scene says")
+
+    def material():
+        same("Material", [scene.names["E"], scene.names["nu"]],
+             [level.youngs_modulus, level.poisson_ratio])
+        verdict.demand(scene["Material/Volumetric strain"] == level.volumetric_strain,
+                       "'Material/Volumetric strain' is not what the scene says")
+
+    def friction():
+        law, F = scene["Contact/Friction law"], scene.names["F"]
+        if law == "Coulomb" and F == 0:
+            law = "none"
+        verdict.demand(law == level.friction_law
+                       and scene["Contact/Contact normal"] == level.contact_normal
+                       and int(scene["Contact/Boundary id"]) == level.contact_boundary,
+                       "section 'Contact' is not what the scene says")
+        same("Contact/Friction coefficient", F if law == "Coulomb" else 0.,
+             level.friction_coefficient)
+        if law == "Tresca" and len(level.contact_nodes):
+            bounds = scene.evaluate(scene["Contact/Friction bound"],
+                                    X[level.contact_nodes] @ scene.rotation)
+            same("Contact/Friction bound",
+                 np.broadcast_to(bounds, len(level.contact_nodes)),
+                 level.friction_bounds)
+
+    def displacement():
+        is_set, values = np.zeros((len(X), dim), bool), np.zeros((len(X), dim))
+
+        def prescribe(nodes, components):
+            texts = ["0" if c == "free" else c for c in components]
+            wanted = np.array([c != "free" for c in components])
+            new = np.zeros(is_set.shape, bool)
+            new[nodes] = wanted
+            new &= ~is_set
+            values[new] = scene.vector_field(texts, X)[new]
+            is_set[new] = True
+
+        for key, components in scene.conditions("Boundary conditions/Displacement"):
+            prescribe(np.unique(level.boundary_faces[level.boundary_ids == int(key)]),
+                      components)
+        size = np.linalg.norm(X[level.cells[:, 0]] - X[level.cells[:, -1]], axis=1)
+        for key, components in scene.conditions("Boundary conditions/Pinned points"):
+            point = scene.rotation @ scene.numbers(key.strip()[1:-1])
+            nearest = np.argmin(np.linalg.norm(X - point, axis=1))
+            if np.linalg.norm(X[nearest] - point) < 1e-8 * size.max():
+                prescribe([nearest], components)
+        hanging_nodes = list(hanging)
+        is_set[hanging_nodes], values[hanging_nodes] = False, 0
+        verdict.demand(np.array_equal(is_set, level.is_prescribed),
+                       "other displacements are prescribed than the scene says")
+        same("Boundary conditions/Displacement", values, level.values)
+
+    def loads():
+        body, faces, tractions = None, [], []
+        components = split(scene["Boundary conditions/Body force"], ",")
+        if components:
+            values, _ = corner_functions(gauss_points(2, dim)[0])
+            points = np.einsum("qv,kvd->kqd", values, X[level.cells]).reshape(-1, dim)
+            body = scene.vector_field(components, points)
+        values, _ = corner_functions(gauss_points(4, dim - 1)[0])
+        for key, components in scene.conditions("Boundary conditions/Traction"):
+            part = level.boundary_faces[level.boundary_ids == int(key)]
+            points = np.einsum("qv,kvd->kqd", values, X[part]).reshape(-1, dim)
+            faces.append(part)
+            tractions.append(scene.vector_field(components, points))
+        empty = np.zeros((0, 2**(dim - 1)), int), np.zeros((0, dim))
+        same("Boundary conditions/Body force' or 'Traction",
+             nodal_loads(level, body, np.vstack([empty[0], *faces]),
+                         np.vstack([empty[1], *tractions])),
+             nodal_loads(level, level.body_force, level.traction_faces,
+                         level.tractions))
+
+    attempt("Material", material)
+    attempt("Contact/Friction bound", friction)
+    attempt("Boundary conditions/Displacement", displacement)
+    attempt("Boundary conditions/Body force' or 'Traction", loads)
+    attempt("Obstacle", lambda: same("Obstacle", scene.obstacle().numbers(),
+                                     level.obstacle.numbers()))
+    return unknown

@@ -1,0 +1,101 @@
+"""What a scene file says."""
+
+import numpy as np
+
+from expressions import Expression, NotUnderstood, split
+from run_data import NotReadable
+from obstacle import Obstacle
+
+
+class SceneText:
+    """What the parameters in history.h5 say. Raises NotUnderstood where that is beyond
+    this program."""
+
+    def __init__(self, text, dim):
+        self.dim, self.entries, section = dim, {}, ""
+        for line in text.splitlines():
+            line = line.split("#")[0].strip()
+            if line.startswith("subsection "):
+                section = line[len("subsection "):].strip() + "/"
+            elif line == "end":
+                section = ""
+            elif line.startswith("set ") and "=" in line:
+                name, _, value = line[4:].partition("=")
+                self.entries[section + name.strip()] = value.strip()
+
+        E, nu = self.number("Material/Young's modulus"), self.number(
+            "Material/Poisson ratio")
+        self.names = {"E": E, "nu": nu, "lambda": E * nu / (1 + nu) / (1 - 2 * nu),
+                      "mu": E / 2 / (1 + nu), "pi": np.pi,
+                      "F": self.number("Contact/Friction coefficient")}
+        for part in split(self["Scene/Constants"], ";"):
+            name, _, expression = part.partition("=")
+            try:
+                self.names[name.strip()] = self.evaluate(expression)
+            except NotUnderstood:
+                pass  # and what needs it will not be understood, either
+        for part in split(self["Scene/Definitions"], ";"):
+            name, _, expression = part.partition("=")
+            self.names[name.strip()] = expression
+
+        angle = self.number("Scene/Rotation angle")
+        c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+        self.rotation = np.eye(dim)
+        self.rotation[:2, :2] = [[c, -s], [s, c]]
+
+    def __getitem__(self, entry):
+        if entry not in self.entries:
+            raise NotReadable(f"'{entry}' is not among the parameters in history.h5.")
+        return self.entries[entry]
+
+    def number(self, entry):
+        return float(self[entry])
+
+    def evaluate(self, expression, points=None):
+        """At points (n x dim) of the scene before it is turned, or without any."""
+        names = dict(self.names)
+        if points is not None:
+            names.update(zip("xyz", points.T))
+        return Expression(expression, names).value()
+
+    def numbers(self, text):
+        return np.array([self.evaluate(part) for part in split(text, ",")], float)
+
+    def vector_field(self, components, points):
+        """Of the scene as it has been turned, at points of it (n x dim)."""
+        original = points @ self.rotation
+        values = np.empty(points.shape)
+        for d, component in enumerate(components):
+            values[:, d] = self.evaluate(component, original)
+        return values @ self.rotation.T
+
+    def conditions(self, entry):
+        """Pairs of a key and components."""
+        for part in split(self[entry], ";"):
+            key, _, components = part.partition(":")
+            yield key.strip(), split(components, ",")
+
+    def obstacle(self):
+        """An Obstacle, like that of a verify-NN.h5."""
+        kind, dim = self["Obstacle/Kind"], self.dim
+        if kind == "none":
+            return Obstacle()
+        if kind == "plane":
+            point = self.numbers(self["Obstacle/Point"])
+            normal = self.numbers(self["Obstacle/Normal"])
+            if len(point) == 0:
+                point = np.zeros(dim)
+            if len(normal) == 0:
+                normal = -np.eye(dim)[-1]
+            normal /= np.linalg.norm(normal)
+            return Obstacle(planes=[(self.rotation @ point, self.rotation @ normal)])
+        length = self.numbers(self["Obstacle/Length"])
+        radius = self.number("Obstacle/Radius")
+        rods, axes = [], split(self["Obstacle/Axes"], ";")
+        for i, center in enumerate(split(self["Obstacle/Centers"], ";")):
+            axis = self.numbers(axes[i]) if dim == 3 else np.zeros(dim)
+            if dim == 3:
+                axis /= np.linalg.norm(axis)
+            rods.append((self.rotation @ self.numbers(center), self.rotation @ axis,
+                         radius, length[0] if len(length) else np.inf))
+        return Obstacle(rods=rods)
