@@ -166,11 +166,9 @@ namespace Friction
             node.point   = entry.second;
             node.measure = measures.local_element(dim * entry.first);
             const Tensor<1, dim> outward = normal / normal.norm();
-            const bool           of_body =
-              scene.contact_normal() == ContactNormal::body ||
-              scene.obstacle().empty();
-            node.frame[0] =
-              of_body ? outward : scene.obstacle().normal(entry.second);
+            node.frame[0] = scene.contact_normal() == ContactNormal::body
+              ? outward
+              : scene.obstacle().normal(entry.second);
             // From the far side of the body the way to the obstacle leads
             // through the body.
             if (node.frame[0] * outward > Obstacle<dim>::flattest_cosine)

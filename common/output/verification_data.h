@@ -38,8 +38,8 @@ namespace Friction
    * - `hanging_weights`: the weight of that master;
    * - `prescribed`: node and component that are prescribed;
    * - `prescribed_values`: their displacements (length);
-   * - `body_force`: dim components (stress/length) at the $2^{dim}$ Gauss points
-   *   of order two of each cell;
+   * - `body_force`: dim components (stress/length) at the $2^{dim}$ Gauss
+   * points of order two of each cell;
    * - `traction_faces`: faces with a given traction, as in `boundary_faces`;
    * - `tractions`: dim components (stress) at the $4^{dim-1}$ Gauss points of
    *   order four of each of these faces;
@@ -51,7 +51,8 @@ namespace Friction
    *   into the obstacle;
    * - `rod_centers`, `rod_axes`: a point of each rod, and the direction of its
    *   axis (zero in two dimensions);
-   * - `rod_radii`, `rod_lengths`: lengths; one that is not positive is infinite.
+   * - `rod_radii`, `rod_lengths`: lengths; one that is not positive is
+   * infinite.
    *
    * Gauss points are numbered with the first coordinate of the cell or the face
    * running fastest. A scene that is turned is written as it has been turned.

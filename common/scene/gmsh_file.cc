@@ -474,7 +474,8 @@ namespace Friction
   {
     std::ifstream     stream(path, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-    const std::string beginning = where + "the mesh file '" + excerpt(path, 300) + "' ";
+    const std::string beginning =
+      where + "the mesh file '" + excerpt(path, 300) + "' ";
     if (!stream.is_open() || bytes.empty())
       throw InputError(
         where + (stream.is_open() ? "there is nothing in" : "cannot open") +

@@ -401,10 +401,12 @@ namespace Friction
     const auto found = ids_of_names.find(name);
     if (found == ids_of_names.end())
       throw InputError(
-        where + ": '" + excerpt(name) + "' is neither a number nor the name of a " +
+        where + ": '" + excerpt(name) +
+        "' is neither a number nor the name of a " +
         (dim == 2 ? "physical curve" : "physical surface") +
         " of the mesh file, which has " +
-        (ids_of_names.empty() ? "no names" : excerpt(names(), 300)) + "; correct it.");
+        (ids_of_names.empty() ? "no names" : excerpt(names(), 300)) +
+        "; correct it.");
     return found->second;
   }
 

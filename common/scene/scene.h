@@ -144,10 +144,12 @@ namespace Friction
       return the_obstacle;
     }
 
+    /// Without an obstacle that of the body.
     ContactNormal
     contact_normal() const
     {
-      return parameters.contact.normal;
+      return the_obstacle.empty() ? ContactNormal::body
+                                  : parameters.contact.normal;
     }
 
     /// Whether nodes of the contact boundary may be prescribed to lie inside
