@@ -46,14 +46,14 @@ def body_integrals(level):
         H = G
         if averaged:
             theta, H = expansion / volume, mean_gradient / volume[:, None, None]
+        # A mean is the same at all points of the cell, so that of the divergence of a
+        # test function its integral remains, as it should.
         stress = 2 * mu * strain + (lame * theta)[:, None, None] * np.eye(dim)
         forces = forces + np.einsum("k,kvj,kij->kvi", dx, G, stress)
         energy += np.sum(dx * (mu * np.sum(strain**2, axis=(1, 2))
                                + lame / 2 * theta**2))
         diagonal = diagonal + dx[:, None] * (
             lame * np.sum(H**2, axis=2) + mu * (1 + dim) * np.sum(G**2, axis=2))
-    # The stress of the mean is constant in the cell, so that the gradients of test
-    # functions, too, count with their mean only.
     return (add_up(level.n_nodes, level.cells, forces), energy,
             add_up(level.n_nodes, level.cells, diagonal[..., None])[:, 0])
 

@@ -182,6 +182,10 @@ def change_body_force(level, _):
     level.body_force[0, 0] += 1e-2 * np.abs(level.body_force).max()
 
 
+def no_number(level, _):
+    level.displacement[5, 0] = np.nan
+
+
 def change_mesh(level, _):
     """An interior node that hangs nowhere, moved by a thousandth of a cell."""
     interior = np.ones(level.n_nodes, bool)
@@ -212,6 +216,7 @@ def check_changes(cases):
         case.expect("Young's modulus", scale("youngs_modulus", 1.001), ["energy"])
         case.expect("a contact node is missing", remove_contact_node, ["equilibrium"])
         case.expect("a vertex is moved", change_mesh, ["equilibrium"])
+        case.expect("a displacement is no number", no_number, ["equilibrium"])
         case.expect("reported energy", report_wrong("energy", 1.0001), ["energy"])
         case.expect("reported normal force", report_wrong("normal_force", 1.0001))
         case.expect("reported pressure", report_wrong("max_pressure", 1.0001))
@@ -327,6 +332,15 @@ def check_stale(work):
     report(status == 2, "stale: nothing to read")
 
 
+def check_unknown(work):
+    """What the program does not understand in a scene, it says."""
+    directory = work / "unknown"
+    run("tresca", directory, ["Contact/Friction bound=0.006*erfc(0)"])
+    status, out, err = verify(directory)
+    report(status == 0 and "does not understand" in out and "erfc" in out,
+           "unknown: an expression", out + err)
+
+
 def check_expressions():
     """Of our own parser, against Python's."""
     x = np.array([[.5, 2.], [-1., .3]])
@@ -362,6 +376,7 @@ def main():
         check_files(work / "hertz", work)
         check_sloppy(work)
         check_stale(work)
+        check_unknown(work)
     sys.exit(failures > 0)
 
 
