@@ -683,6 +683,8 @@ def main():
     # Without a daemon for a single process, which would outlive it.
     if options.processes == 1:
         os.environ["OMPI_MCA_ess_singleton_isolated"] = "1"
+    if not h5py:
+        print("without h5py histories are not compared, but only tables")
     faults = Faults(options)
     try:
         for scenario in options.scenarios:
