@@ -653,7 +653,7 @@ class Faults:
 
 
 def in_namespace():
-    """Start this script again where its mounts are nobody else's business."""
+    """Start this script again where no other process sees its mounts."""
     if "FAULTS_NAMESPACE" in os.environ or not shutil.which("unshare"):
         return
     own = ["--mount"] if os.geteuid() == 0 else ["--map-root-user", "--mount"]
