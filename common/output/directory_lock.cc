@@ -103,21 +103,24 @@ namespace Friction
           ::close(opened);
       }
 
-    // For information only: a lock without it is a lock as well.
-    const std::string text = describe_this_process();
-    if (::ftruncate(descriptor, 0) == 0 &&
-        ::pwrite(descriptor, text.data(), text.size(), 0) < 0)
-      return;
+    // On a full disk there may be no room for it; a lock is a lock
+    // nevertheless.
+    const std::string text    = describe_this_process();
+    const bool        written = ::ftruncate(descriptor, 0) == 0 &&
+      ::pwrite(descriptor, text.data(), text.size(), 0) >= 0;
+    (void)written;
   }
 
 
 
-  // As long as the file is locked, its name is ours.
+  // As long as the file is locked, its name is ours, unless it was removed by
+  // hand.
   DirectoryLock::~DirectoryLock()
   {
     if (descriptor < 0)
       return;
-    ::unlink(file.c_str());
+    if (has_its_name(descriptor, file))
+      ::unlink(file.c_str());
     ::close(descriptor);
   }
 

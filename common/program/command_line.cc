@@ -93,9 +93,10 @@ namespace Friction
           if (argument == option)
             throw InputError("'" + option + "' has to be the first argument.");
       for (const std::string &argument : arguments)
-        if (argument.rfind("-", 0) == 0 && argument != "--restart")
+        if (argument.rfind("-", 0) == 0 && argument != "--restart" &&
+            argument != "--check")
           throw InputError("'" + excerpt(argument) +
-                           "' is no option; there are '--restart', "
+                           "' is no option; there are '--check', '--restart', "
                            "'--parameters', '--version' and '--help'.");
     }
   } // namespace

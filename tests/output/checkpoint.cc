@@ -5,6 +5,10 @@
 #include <common/compatibility.h>
 #include <common/output/checkpoint.h>
 #include <common/parallel/collective_error.h>
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <deal.II/dofs/dof_tools.h>
 
@@ -16,6 +20,8 @@
 #include <tests/support/check.h>
 #include <tests/support/random.h>
 
+#include <cerrno>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -24,6 +30,27 @@
 
 using namespace dealii;
 using namespace Friction;
+
+namespace
+{
+  // Whether the system can take room for a file that is not yet written.
+  bool knows_room = true;
+} // namespace
+
+
+
+// This one takes the place of the function of the system, in the library as
+// well.
+extern "C" int
+fallocate(int descriptor, int mode, off_t offset, off_t length)
+{
+  if (knows_room)
+    return syscall(SYS_fallocate, descriptor, mode, offset, length);
+  errno = EOPNOTSUPP;
+  return -1;
+}
+
+
 
 namespace
 {
@@ -122,9 +149,11 @@ namespace
 
   template <int dim>
   void
-  save(const Checkpoints &checkpoints, const unsigned int level)
+  save(const Checkpoints &checkpoints,
+       const unsigned int level,
+       const MPI_Comm     communicator = MPI_COMM_WORLD)
   {
-    Mesh<dim> mesh(MPI_COMM_WORLD,
+    Mesh<dim> mesh(communicator,
                    Triangulation<dim>::limit_level_difference_at_vertices,
                    Mesh<dim>::construct_multigrid_hierarchy);
     GridGenerator::subdivided_hyper_rectangle(
@@ -293,6 +322,53 @@ namespace
 
 
 
+  // Files that may not get longer than a limit are cut off without a word from
+  // MPI, which is found out here even if it could not be known before.
+  template <int dim>
+  void
+  cut_off(const RunDirectory &directory)
+  {
+    if (!first())
+      return;
+    const RunDirectory alone(directory.file("alone"));
+    const Checkpoints  checkpoints(alone, MPI_COMM_SELF);
+    save<dim>(checkpoints, 2, MPI_COMM_SELF);
+    save<dim>(checkpoints, 3, MPI_COMM_SELF);
+    const auto size =
+      std::filesystem::file_size(alone.file("checkpoint-03/mesh_fixed.data"));
+
+    rlimit limit;
+    getrlimit(RLIMIT_FSIZE, &limit);
+    for (const bool is_asked_before : {true, false})
+      for (const unsigned int missing : {1, 8, 1000})
+        {
+          knows_room           = is_asked_before;
+          const rlim_t before  = limit.rlim_cur;
+          limit.rlim_cur       = size - missing;
+          std::string sentence = "nothing";
+          setrlimit(RLIMIT_FSIZE, &limit);
+          try
+            {
+              save<dim>(checkpoints, 3, MPI_COMM_SELF);
+            }
+          catch (const InputError &error)
+            {
+              sentence = error.what();
+            }
+          limit.rlim_cur = before;
+          setrlimit(RLIMIT_FSIZE, &limit);
+          Tests::check(
+            sentence.find("' cannot be written") != std::string::npos &&
+              checkpoints.find_last().level == 3 &&
+              checkpoints.find_last().warning.empty() &&
+              !std::filesystem::exists(alone.file("checkpoint.part")),
+            "a file without its last " + std::to_string(missing) + " bytes");
+        }
+    std::filesystem::remove_all(alone.path());
+  }
+
+
+
   template <int dim>
   void
   test()
@@ -333,6 +409,7 @@ namespace
     MPI_Comm_free(&half);
 
     damage<dim>(directory, checkpoints);
+    cut_off<dim>(directory);
     list(directory);
 
     checkpoints.remove_after(2);
@@ -346,6 +423,7 @@ int
 main(int argc, char **argv)
 {
   Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  std::signal(SIGXFSZ, SIG_IGN);
   test<2>();
   test<3>();
 }

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <memory>
 #include <regex>
 
 using namespace Friction;
@@ -140,6 +141,23 @@ main(int argc, char **argv)
   MPI_Barrier(MPI_COMM_WORLD);
   if (first)
     std::filesystem::remove(file);
+
+  // Its file was removed by hand, and another run has begun: the file is the
+  // one of that run then, and stays.
+  {
+    auto lock = std::make_unique<DirectoryLock>(directory, MPI_COMM_WORLD);
+    MPI_Barrier(MPI_COMM_WORLD);
+    if (first)
+      std::filesystem::remove(file);
+    MPI_Barrier(MPI_COMM_WORLD);
+    const DirectoryLock other(directory, MPI_COMM_WORLD);
+    lock.reset();
+    MPI_Barrier(MPI_COMM_WORLD);
+    Tests::check_everywhere(std::filesystem::exists(file),
+                            "the file of another run stays");
+    print(attempt(directory));
+  }
+  check_no_file();
 
   // What file systems without locks answer.
   for (const int error : {ENOLCK, EOPNOTSUPP, ENOSYS})

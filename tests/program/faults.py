@@ -82,10 +82,12 @@ class Faults:
 
     # --- runs -----------------------------------------------------------------
 
-    def command(self, directory, *arguments, n=None, levels=None, checkpoint=True):
+    def command(self, directory, *arguments, n=None, levels=None, checkpoint=True,
+                limited=False):
         n = n or self.options.processes
         levels = self.options.levels if levels is None else levels
-        words = [self.options.program, self.options.scene,
+        ignoring = ["sh", "-c", "trap '' XFSZ; exec \"$0\" \"$@\""] if limited else []
+        words = [*ignoring, self.options.program, self.options.scene,
                  f"Output/Directory={directory}", f"Refinement/Levels={levels}",
                  "Output/Times=false", *arguments]
         if checkpoint:
@@ -96,19 +98,23 @@ class Faults:
 
     def start(self, *arguments, longest_file=None, **keywords):
         """In a session of its own, with the output in files."""
+        limited, environment = longest_file is not None, dict(os.environ)
+        if limited:
+            # Processes exchange messages without files, which may be longer.
+            environment.update(OMPI_MCA_btl="self,tcp", PMIX_MCA_gds="hash")
+
         def limit():
-            # As a quota does, this makes writing fail, but sends no signal.
-            if longest_file is not None:
-                signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            if limited:
                 resource.setrlimit(resource.RLIMIT_FSIZE, (longest_file,) * 2)
 
         out, err = (tempfile.TemporaryFile("w+", dir=self.work) for _ in range(2))
         # Programs of MPI that share a folder for their own purposes may remove it
         # while another one starts.
         own = tempfile.mkdtemp(prefix="mpi-", dir=self.work)
-        process = subprocess.Popen(self.command(*arguments, **keywords), stdout=out,
+        process = subprocess.Popen(self.command(*arguments, limited=limited,
+                                                **keywords), stdout=out,
                                    stderr=err, stdin=subprocess.DEVNULL,
-                                   env={**os.environ, "TMPDIR": own},
+                                   env={**environment, "TMPDIR": own},
                                    start_new_session=True, preexec_fn=limit)
         process.files = out, err
         return process
@@ -623,7 +629,8 @@ class Faults:
             result = self.run(directory, "Output/Fields=false", longest_file=limit)
             statuses[result.status] += 1
             demand(result.status != 0, f"{limit} bytes have been enough")
-            demand(result.status > 0, f"{limit} bytes: {result}")
+            demand(result.status == 2 and "cannot be written" in result.err,
+                   f"{limit} bytes: {result}")
             n_rows = len(rows_of(result.out))
             level = newest_checkpoint(directory)
             demand(level >= n_rows - 1, f"{n_rows} rows, but checkpoint {level}")
@@ -646,7 +653,7 @@ class Faults:
 
 
 def in_namespace():
-    """Start this script again where its mounts are nobody else's business."""
+    """Start this script again where no other process sees its mounts."""
     if "FAULTS_NAMESPACE" in os.environ or not shutil.which("unshare"):
         return
     own = ["--mount"] if os.geteuid() == 0 else ["--map-root-user", "--mount"]
@@ -676,6 +683,8 @@ def main():
     # Without a daemon for a single process, which would outlive it.
     if options.processes == 1:
         os.environ["OMPI_MCA_ess_singleton_isolated"] = "1"
+    if not h5py:
+        print("without h5py histories are not compared, but only tables")
     faults = Faults(options)
     try:
         for scenario in options.scenarios:
