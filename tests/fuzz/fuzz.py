@@ -2,7 +2,8 @@
 programs: whatever they are, a run has to end with a result or with a sentence.
 
 Usage: fuzz.py PROGRAM_2D PROGRAM_3D SCENES_2D SCENES_3D FOUND
-         [--seconds N] [--seed N] [--processes MPIEXEC FLAG N] [--verify SCRIPT]
+         [--seconds N] [--inputs N] [--seed N] [--processes MPIEXEC FLAG N]
+         [--verify SCRIPT] [--replay FOLDER]
 
 Each input is made from a number, its seed, which is printed with what is found and
 with which it can be made again (--seed N --seconds 0 tries that one only). An input
@@ -18,7 +19,8 @@ is a finding if the run
   SCRIPT, a second program that reads what was written.
 
 The inputs of findings are saved in the folder FOUND, one folder for each. Exit status
-1 if there were any.
+1 if there were any. What was found once, and has been mended, is kept in the folder
+corpus beside this file, and tried by --replay.
 """
 import argparse
 import os
@@ -319,10 +321,36 @@ class Fuzzer:
             os.chdir(here)
             shutil.rmtree(work, ignore_errors=True)
 
+    def replay(self, folder):
+        """Runs a saved input: its files, the program's dimension in the folder's name,
+        and the arguments, a line each, in the file of that name."""
+        work = tempfile.mkdtemp()
+        here = os.getcwd()
+        try:
+            shutil.copytree(folder, os.path.join(work, 'case'))
+            os.chdir(os.path.join(work, 'case'))
+            arguments = read('arguments').decode().split('\n')
+            result = self.run(3 if '3d' in os.path.basename(folder) else 2, arguments)
+            problem = self.problems(*result)
+            self.n_inputs += 1
+            self.outcomes[result[0]] = self.outcomes.get(result[0], 0) + 1
+            if problem:
+                self.findings.setdefault(problem, []).append(os.path.basename(folder))
+                print('%s: %s' % (folder, problem))
+                print('\n'.join(result[1:])[:2000])
+        finally:
+            os.chdir(here)
+            shutil.rmtree(work, ignore_errors=True)
+
     def main(self):
         begin, seed = time.time(), self.a.seed
-        self.try_seed(seed)
-        while time.time() - begin < self.a.seconds:
+        if self.a.replay:
+            for name in sorted(os.listdir(self.a.replay)):
+                self.replay(os.path.abspath(os.path.join(self.a.replay, name)))
+        else:
+            self.try_seed(seed)
+        while (not self.a.replay and time.time() - begin < self.a.seconds and
+               (self.a.inputs is None or self.n_inputs < self.a.inputs)):
             seed += 1
             self.try_seed(seed)
         print('%d inputs, of which %s' % (self.n_inputs, ', '.join(
@@ -343,5 +371,7 @@ if __name__ == '__main__':
     parser.add_argument('--seconds', type=float, default=60.)
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--processes', nargs=3)
+    parser.add_argument('--inputs', type=int)
     parser.add_argument('--verify')
+    parser.add_argument('--replay')
     sys.exit(Fuzzer(parser.parse_args()).main())

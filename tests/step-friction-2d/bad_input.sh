@@ -168,7 +168,7 @@ quoted 'a long path' 'cannot read the scene file .aaa.*aaa.' \
 
 # Options.
 bad 'an option that does not exist' \
-  "'--foo' is no option; there are '--restart'" --foo
+  "'--foo' is no option; there are '--check'" --foo
 bad 'an option that does not exist, after the scene' \
   "'--restrat' is no option" "$block" --restrat
 bad 'an option that stands alone' "'--help' has to be" "$block" --help
@@ -302,6 +302,17 @@ if [ -n "$mpiexec" ]; then
   on_two 'missing scene' 2 '^step-friction-2d: .*missing.prm' missing.prm
   on_two 'output directory that cannot be created' 2 \
     '^step-friction-2d: .*file/results' "$block" Output/Directory=file/results
+  # Only one of them gets to the place.
+  on_two 'load that is no number somewhere' 2 'is not a number at' "$block" \
+    Output/Directory=results 'Boundary conditions/Body force=0, 1e-9*sqrt(y-0.1)' \
+    'Refinement/Initial refinements=3'
+  on_two 'bound that is no number in one point' 2 "'1/x' is inf at (0, 0)" \
+    "$block" Output/Directory=results 'Contact/Friction law=Tresca' \
+    'Contact/Friction bound=1/x' 'Refinement/Initial refinements=3'
+  on_two 'body that is not held' 2 'is not held against' "$block" \
+    Output/Directory=results 'Boundary conditions/Displacement=3: 0, free'
+  on_two 'mesh that is too large' 2 'degrees of freedom' "$block" \
+    Output/Directory=results 'Refinement/Initial refinements=15'
   on_two 'prescribed displacement into the obstacle' 2 \
     '^step-friction-2d: .*into the obstacle' "$block" Output/Directory=results \
     'Boundary conditions/Displacement=3: 0.02, -0.02; 0: 0.02, -0.02'
