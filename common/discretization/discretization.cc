@@ -1,5 +1,6 @@
 #include <common/compatibility.h>
 #include <common/discretization/discretization.h>
+#include <common/discretization/held_body.h>
 #include <common/discretization/leaf_matrix.h>
 #include <common/discretization/node_numbering.h>
 #include <common/parallel/collective_error.h>
@@ -227,6 +228,7 @@ namespace Friction
       make_node_block_matrix<dim>(matrix, pattern, *nodal_constraints),
       *nodal_constraints);
     pattern.reinit(0, 0);
+    check_that_body_is_held(*this);
     seconds_of_assembly = timer.wall_time();
   }
 

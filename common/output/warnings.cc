@@ -24,9 +24,10 @@ namespace Friction
     // first, and do not matter if they are flatter than the second; degrees.
     constexpr double smallest_corner = 40., smallest_edge = 3.;
 
-    // From here on a tangential force that belongs to one normal is a normal
-    // force for the other: five degrees change the ratio of the two by 0.09.
-    constexpr double large_angle = 5.; // degrees
+    // Where a round body touches a flat obstacle, the normals of nodes at the rim
+    // of the contact zone differ by some degrees, to both sides. Beyond this it is
+    // a slope, or a corner: ten degrees change a ratio of forces by 0.18.
+    constexpr double large_angle = 10.; // degrees
 
     // Relative to the largest displacement at the contact boundary, and to the
     // body.

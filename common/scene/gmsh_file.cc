@@ -103,8 +103,7 @@ namespace Friction
       void
       skip_section()
       {
-        const std::size_t end =
-          bytes.find("$End" + section.substr(1), position);
+        const std::size_t end = bytes.find(end_of(section), position);
         if (end == bytes.npos)
           end_of_file();
         position = end;
@@ -117,7 +116,7 @@ namespace Friction
         std::string text;
         while (text.empty() && !at_end())
           text = line();
-        if (text != "$End" + section.substr(1))
+        if (text != end_of(section))
           fail("has more in its section " + section +
                " than it says there is; it may be damaged.");
       }
@@ -176,6 +175,14 @@ namespace Friction
       bool is_binary = false;
 
     private:
+      // Version 1 has names in capitals.
+      static std::string
+      end_of(const std::string &section)
+      {
+        return (section == "$NOD" || section == "$ELM" ? "$END" : "$End") +
+          section.substr(1);
+      }
+
       [[noreturn]] void
       end_of_file() const
       {
@@ -256,6 +263,16 @@ namespace Friction
         return found->second;
       }
 
+      // Negative ones say that the orientation of a curve is another one.
+      int
+      physical_id(const long number) const
+      {
+        if (std::abs(number) > 2000000000)
+          reader.fail("has a physical id " + std::to_string(number) +
+                      ", which is too large.");
+        return std::abs(number);
+      }
+
       // Node tags in the order of Gmsh.
       void
       add_element(const long                      type_number,
@@ -315,7 +332,7 @@ namespace Friction
             reader.fail("has a section $PhysicalNames that cannot be "
                         "understood.");
           file.names[{dimension, text.substr(first + 1, last - first - 1)}] =
-            id;
+            std::abs(std::max(id, -2000000000));
         }
     }
 
@@ -370,7 +387,7 @@ namespace Friction
                     {
                       const long tag = reader.integer();
                       if (t == 0)
-                        physical_id = tag;
+                        physical_id = collect.physical_id(tag);
                     }
                   nodes.resize(collect.type(type).n_nodes);
                   for (std::size_t &node : nodes)
@@ -384,17 +401,50 @@ namespace Friction
 
 
 
+    // Version 1 is that of deal.II's GridOut: always text, and an element says
+    // how many nodes it has.
+    void
+    read_format_1(Reader            &reader,
+                  const std::string &section,
+                  Collector         &collect)
+    {
+      for (long n = reader.integer(); n > 0; --n)
+        {
+          const long number = reader.integer();
+          if (section == "$NOD")
+            {
+              dealii::Point<3> p;
+              for (unsigned int d = 0; d < 3; ++d)
+                p[d] = reader.real();
+              collect.add_node(number, p);
+              continue;
+            }
+          const long type = reader.integer();
+          const int  id   = collect.physical_id(reader.integer());
+          reader.integer();
+          std::vector<std::size_t> nodes(collect.type(type).n_nodes);
+          if (reader.integer() != static_cast<long>(nodes.size()))
+            reader.fail("has an element, number " + std::to_string(number) +
+                        ", with another number of nodes than its type has.");
+          for (std::size_t &node : nodes)
+            node = reader.integer();
+          collect.add_element(type, number, {id}, nodes);
+        }
+    }
+
+
+
     // The physical ids of each entity, by its dimension and tag.
     using Entities = std::map<std::pair<long, long>, std::vector<int>>;
 
     void
-    read_entities(Reader &reader, Entities &entities)
+    read_entities(Reader &reader, const Collector &collect, Entities &entities)
     {
       std::array<std::size_t, 4> n;
       for (std::size_t &count : n)
         count = reader.size();
       for (unsigned int dimension = 0; dimension < 4; ++dimension)
-        for (std::size_t i = 0; i < reader.checked(n[dimension]); ++i)
+        for (std::size_t i = reader.checked(n[dimension]); i > 0; --i)
           {
             const long tag = reader.integer();
             for (unsigned int c = 0; c < (dimension == 0 ? 3u : 6u); ++c)
@@ -402,7 +452,7 @@ namespace Friction
             std::vector<int> &ids = entities[{dimension, tag}];
             ids.resize(reader.checked(reader.size()));
             for (int &id : ids)
-              id = std::abs(static_cast<int>(reader.integer()));
+              id = collect.physical_id(reader.integer());
             if (dimension == 0)
               continue;
             for (std::size_t b = reader.checked(reader.size()); b > 0; --b)
@@ -489,15 +539,25 @@ namespace Friction
     bool      has_nodes = false, has_elements = false;
     while (!reader.at_end())
       {
-        const std::string section = reader.line();
-        if (section.empty() && format > 0)
+        std::string section = reader.line();
+        // Some editors begin a file with three bytes that mean UTF-8.
+        if (section.rfind("\xef\xbb\xbf", 0) == 0)
+          section.erase(0, 3);
+        if (section.empty())
           continue;
-        if (format == 0 && section != "$MeshFormat")
-          reader.fail("is not in Gmsh's format .msh; export it from Gmsh as "
-                      "version 2.2 or 4.1.");
-        if (section[0] != '$')
-          reader.fail("has something between its sections that does not belong "
-                      "there; it may be damaged.");
+        const bool is_version_1 = section == "$NOD" || section == "$ELM";
+        if (section[0] != '$' ||
+            (format == 0 && !is_version_1 && section != "$MeshFormat" &&
+             section != "$Comments"))
+          {
+            if (format == 0 && !has_nodes)
+              reader.fail(
+                "is not in Gmsh's format .msh; export it from Gmsh as "
+                "version 2.2 or 4.1.");
+            reader.fail(
+              "has something between its sections that does not belong "
+              "there; it may be damaged.");
+          }
         reader.begin_section(section);
         if (section == "$MeshFormat")
           {
@@ -519,10 +579,18 @@ namespace Friction
               reader.fail("comes from a machine that stores numbers the other "
                           "way round; save it as text.");
           }
+        else if (is_version_1)
+          {
+            (section == "$NOD" ? has_nodes : has_elements) = true;
+            read_format_1(reader, section, collect);
+          }
+        else if (section == "$PartitionedEntities")
+          reader.fail("is partitioned; save it without partitions, since the "
+                      "programs distribute meshes themselves.");
         else if (section == "$PhysicalNames")
           read_names(reader, file);
         else if (section == "$Entities" && format == 4.1)
-          read_entities(reader, entities);
+          read_entities(reader, collect, entities);
         else if (section == "$Nodes" || section == "$Elements")
           {
             (section == "$Nodes" ? has_nodes : has_elements) = true;

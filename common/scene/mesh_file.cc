@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <tuple>
 
 namespace Friction
 {
@@ -48,6 +49,29 @@ namespace Friction
         text << (d > 0 ? ", " : "") << p[d];
       text << ')';
       return text.str();
+    }
+
+
+
+    // Whether a cell goes around its face with the number f, seen from outside,
+    // in one sense or in the other: a matter of the order of the vertices, so
+    // that its two cells can be compared.
+    bool
+    sense_around(const std::array<unsigned int, 2> &face, const unsigned int f)
+    {
+      const bool upwards = face[0] < face[1];
+      return (f == 1 || f == 2) ? upwards : !upwards;
+    }
+
+    bool
+    sense_around(const std::array<unsigned int, 4> &face, const unsigned int f)
+    {
+      const std::array<unsigned int, 4> cycle = {
+        {face[0], face[1], face[3], face[2]}};
+      const unsigned int first =
+        std::min_element(cycle.begin(), cycle.end()) - cycle.begin();
+      const bool upwards = cycle[(first + 1) % 4] < cycle[(first + 3) % 4];
+      return f % 2 == 1 ? upwards : !upwards;
     }
 
 
@@ -175,15 +199,20 @@ namespace Friction
         cells.push_back(cell);
       }
 
-    // One that is in two groups comes twice.
+    // One that is in two groups comes twice, perhaps numbered in another way.
+    const auto sorted = [](const Cell &cell) {
+      auto nodes = cell.vertices;
+      std::sort(nodes.begin(), nodes.end());
+      return nodes;
+    };
     std::stable_sort(
-      cells.begin(), cells.end(), [](const Cell &a, const Cell &b) {
-        return a.vertices < b.vertices;
+      cells.begin(), cells.end(), [&](const Cell &a, const Cell &b) {
+        return sorted(a) < sorted(b);
       });
     cells.erase(std::unique(cells.begin(),
                             cells.end(),
-                            [](const Cell &a, const Cell &b) {
-                              return a.vertices == b.vertices;
+                            [&](const Cell &a, const Cell &b) {
+                              return sorted(a) == sorted(b);
                             }),
                 cells.end());
     std::sort(cells.begin(), cells.end(), [](const Cell &a, const Cell &b) {
@@ -217,10 +246,13 @@ namespace Friction
           largest_z  = std::max(largest_z, file.nodes[v][2]);
           size       = std::max(size, p.distance(vertices[0]));
         }
-    if (dim == 2 && largest_z - smallest_z > 1e-8 * size)
-      fail("lies in no plane z = constant: its z goes from " +
-           std::to_string(smallest_z) + " to " + std::to_string(largest_z) +
-           "; turn it into the plane of x and y.");
+    if (dim == 2 && largest_z - smallest_z > 1e-6 * size)
+      {
+        std::ostringstream text;
+        text << "lies in no plane z = constant: its z goes from " << smallest_z
+             << " to " << largest_z << "; turn it into the plane of x and y.";
+        fail(text.str());
+      }
     for (Cell &cell : cells)
       for (unsigned int &v : cell.vertices)
         v = new_number[v];
@@ -326,30 +358,49 @@ namespace Friction
   void
   MeshFile<dim>::find_boundary()
   {
-    std::vector<Face> faces;
-    faces.reserve(cells.size() * 2 * dim);
-    for (const Cell &cell : cells)
+    // Each face with the sense in which its cell goes around it, and the cell.
+    struct Side
+    {
+      Face         face;
+      bool         sense;
+      unsigned int cell;
+    };
+    std::vector<Side> sides;
+    sides.reserve(cells.size() * 2 * dim);
+    for (unsigned int c = 0; c < cells.size(); ++c)
       for (unsigned int f = 0; f < 2 * dim; ++f)
         {
           Face face;
           for (unsigned int v = 0; v < n_face_vertices; ++v)
             face[v] =
-              cell.vertices[GeometryInfo<dim>::face_to_cell_vertices(f, v)];
+              cells[c].vertices[GeometryInfo<dim>::face_to_cell_vertices(f, v)];
+          const bool sense = sense_around(face, f);
           std::sort(face.begin(), face.end());
-          faces.push_back(face);
+          sides.push_back({face, sense, c});
         }
-    std::sort(faces.begin(), faces.end());
-    for (auto face = faces.begin(); face != faces.end();)
+    std::sort(sides.begin(), sides.end(), [](const Side &a, const Side &b) {
+      return std::tie(a.face, a.cell) < std::tie(b.face, b.cell);
+    });
+    for (auto side = sides.begin(); side != sides.end();)
       {
-        const auto next = std::find_if(
-          face, faces.end(), [&](const Face &other) { return other != *face; });
-        if (next - face > 2)
-          fail("has " + std::to_string(next - face) + " cells that share the " +
-               (dim == 2 ? "edge " : "face ") + place(*face) +
-               "; cells overlap there.");
-        if (next - face == 1)
-          boundary.push_back(*face);
-        face = next;
+        const auto next =
+          std::find_if(side, sides.end(), [&](const Side &other) {
+            return other.face != side->face;
+          });
+        const std::string what = dim == 2 ? "edge " : "face ";
+        if (next - side > 2)
+          fail("has " + std::to_string(next - side) + " cells that share the " +
+               what + place(side->face) + "; cells overlap there.");
+        // Neighbours go around their face in opposite directions, unless one of
+        // them lies on the other one's side of it.
+        if (next - side == 2 && side->sense == (side + 1)->sense)
+          fail("has two cells on the same side of the " + what +
+               place(side->face) + ", " + place(cells[side->cell]) + " and " +
+               place(cells[(side + 1)->cell]) +
+               "; one of them is folded over the other.");
+        if (next - side == 1)
+          boundary.push_back(side->face);
+        side = next;
       }
   }
 

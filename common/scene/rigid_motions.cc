@@ -1,21 +1,12 @@
 #include <common/input_error.h>
 #include <common/scene/rigid_motions.h>
 
-#include <deal.II/base/quadrature_lib.h>
-
-#include <deal.II/fe/fe_q.h>
-#include <deal.II/fe/fe_values.h>
-
-#include <deal.II/lac/vector.h>
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <set>
 #include <sstream>
 
 namespace Friction
@@ -29,50 +20,47 @@ namespace Friction
 
 
 
-    /** A connected part of the body. */
     template <int dim>
-    struct Part
+    Point<dim>
+    center(const FreePart<dim> &part)
     {
-      std::vector<unsigned int>    cells;
-      Point<dim>                   lower, upper;
-      std::set<types::material_id> materials;
-      std::set<types::boundary_id> boundary_ids;
+      return part.lower + .5 * (part.upper - part.lower);
+    }
 
-      Point<dim>
-      center() const
-      {
-        return lower + .5 * (upper - lower);
-      }
 
-      double
-      size() const
-      {
-        return .5 * lower.distance(upper);
-      }
 
-      // The displacement of a point by each of the motions, as columns.
-      Eigen::MatrixXd
-      motions_at(const Point<dim> &p) const
-      {
-        const Tensor<1, dim> arm = (p - center()) / size();
-        Eigen::MatrixXd      m   = Eigen::MatrixXd::Zero(dim, n_motions<dim>);
-        for (unsigned int d = 0; d < dim; ++d)
-          m(d, d) = 1.;
-        if constexpr (dim == 2)
+    template <int dim>
+    double
+    size(const FreePart<dim> &part)
+    {
+      return .5 * part.lower.distance(part.upper);
+    }
+
+
+
+    // The displacement of a point by each of the motions, as columns.
+    template <int dim>
+    Eigen::MatrixXd
+    all_motions_at(const FreePart<dim> &part, const Point<dim> &p)
+    {
+      const Tensor<1, dim> arm = (p - center(part)) / size(part);
+      Eigen::MatrixXd      m   = Eigen::MatrixXd::Zero(dim, n_motions<dim>);
+      for (unsigned int d = 0; d < dim; ++d)
+        m(d, d) = 1.;
+      if constexpr (dim == 2)
+        {
+          m(0, 2) = -arm[1];
+          m(1, 2) = arm[0];
+        }
+      else
+        // The rotation around axis d.
+        for (unsigned int d = 0; d < 3; ++d)
           {
-            m(0, 2) = -arm[1];
-            m(1, 2) = arm[0];
+            m((d + 1) % 3, 3 + d) = -arm[(d + 2) % 3];
+            m((d + 2) % 3, 3 + d) = arm[(d + 1) % 3];
           }
-        else
-          // The rotation around axis d.
-          for (unsigned int d = 0; d < 3; ++d)
-            {
-              m((d + 1) % 3, 3 + d) = -arm[(d + 2) % 3];
-              m((d + 2) % 3, 3 + d) = arm[(d + 1) % 3];
-            }
-        return m;
-      }
-    };
+      return m;
+    }
 
 
 
@@ -108,7 +96,7 @@ namespace Friction
     // The motion in words.
     template <int dim>
     std::string
-    describe_motion(const Eigen::VectorXd &m, const Part<dim> &part)
+    describe_motion(const Eigen::VectorXd &m, const FreePart<dim> &part)
     {
       Tensor<1, dim> shift, turn;
       for (unsigned int d = 0; d < dim; ++d)
@@ -117,7 +105,7 @@ namespace Friction
         turn[d - dim] = m[d];
       if (turn.norm() < 1e-6 * m.norm())
         return "a displacement in " + describe_direction(shift);
-      turn /= part.size();
+      turn /= size(part);
 
       // The point, or the axis, that stays where it is.
       if constexpr (dim == 2)
@@ -125,7 +113,7 @@ namespace Friction
           const Tensor<1, 2> to_center(
             {-shift[1] / turn[0], shift[0] / turn[0]});
           return "a rotation around " +
-            describe<dim>(part.center() + to_center, part.size());
+            describe<dim>(center(part) + to_center, size(part));
         }
       else
         {
@@ -133,7 +121,7 @@ namespace Friction
           const Tensor<1, dim> to_axis =
             cross_product_3d(turn, shift) / turn.norm_square();
           return "a rotation around the axis through " +
-            describe<dim>(part.center() + to_axis, part.size()) + " in " +
+            describe<dim>(center(part) + to_axis, size(part)) + " in " +
             describe_direction(axis) +
             (std::abs(shift * axis) > 1e-6 * m.norm()
                ? " together with a displacement along it"
@@ -181,7 +169,7 @@ namespace Friction
       std::vector<unsigned int> active;
       Eigen::VectorXd           rest      = loads;
       const double              tolerance = 1e-10;
-      for (unsigned int step = 0; step < 10 * n + 100; ++step)
+      for (unsigned int step = 0; step < 200; ++step)
         {
           if (n == 0)
             break;
@@ -227,33 +215,51 @@ namespace Friction
   Holding
   held_by_contact(const Eigen::VectorXd &loads, const Eigen::MatrixXd &contact)
   {
-    Holding result;
-    if (loads.size() == 0)
+    Holding            result;
+    const unsigned int n_rows = loads.size();
+    if (n_rows == 0)
       return result;
-    Eigen::MatrixXd directions(contact.rows(), 0);
-    for (unsigned int p = 0; p < contact.cols(); ++p)
-      if (contact.col(p).norm() > 1e-8)
-        {
-          directions.conservativeResize(Eigen::NoChange, directions.cols() + 1);
-          directions.col(directions.cols() - 1) = contact.col(p).normalized();
-        }
 
-    Eigen::VectorXd scaled = loads;
-    if (loads.norm() > 0.)
+    // In units in which contact nodes move by one at most: a small foot feels
+    // little of a rotation, but is there to stop it.
+    Eigen::VectorXd units = Eigen::VectorXd::Ones(n_rows);
+    for (unsigned int i = 0; i < n_rows; ++i)
+      if (contact.cols() > 0)
+        {
+          const double largest = contact.row(i).cwiseAbs().maxCoeff();
+          if (largest > 1e-8)
+            units[i] = 1. / largest;
+        }
+    std::vector<Eigen::VectorXd> columns;
+    for (unsigned int p = 0; p < contact.cols(); ++p)
+      {
+        const Eigen::VectorXd column = units.asDiagonal() * contact.col(p);
+        if (column.norm() > 1e-8)
+          columns.push_back(column.normalized());
+      }
+    Eigen::MatrixXd directions(n_rows, columns.size());
+    for (unsigned int p = 0; p < columns.size(); ++p)
+      directions.col(p) = columns[p];
+
+    Eigen::VectorXd scaled = units.asDiagonal() * loads;
+    const auto      motion = [&](const Eigen::VectorXd &rest) {
+      return Eigen::VectorXd((units.asDiagonal() * rest).normalized());
+    };
+    if (scaled.norm() > 0.)
       {
         scaled.normalize();
         const Eigen::VectorXd rest = unbalanced(scaled, directions);
         if (rest.norm() > 1e-6)
           {
-            result.motion    = rest.normalized();
+            result.motion    = motion(rest);
             result.is_driven = true;
             return result;
           }
       }
 
     // The loads of a neighbourhood.
-    const double neighbourhood = 1e-3;
-    for (unsigned int i = 0; i < loads.size(); ++i)
+    const double neighbourhood = 1e-4;
+    for (unsigned int i = 0; i < n_rows; ++i)
       for (const double sign : {1., -1.})
         {
           Eigen::VectorXd other = scaled;
@@ -261,7 +267,7 @@ namespace Friction
           const Eigen::VectorXd rest = unbalanced(other, directions);
           if (rest.norm() > 1e-3 * neighbourhood)
             {
-              result.motion = rest.normalized();
+              result.motion = motion(rest);
               return result;
             }
         }
@@ -275,14 +281,13 @@ namespace Friction
   find_parts(const Triangulation<dim>  &mesh,
              std::vector<unsigned int> &part_of_cell)
   {
-    part_of_cell.assign(mesh.n_active_cells(), numbers::invalid_unsigned_int);
-    unsigned int                                                   n_parts = 0;
-    std::vector<typename Triangulation<dim>::active_cell_iterator> front;
-    for (const auto &first : mesh.active_cell_iterators())
-      if (part_of_cell[first->active_cell_index()] ==
-          numbers::invalid_unsigned_int)
+    part_of_cell.assign(mesh.n_cells(0), numbers::invalid_unsigned_int);
+    unsigned int                                            n_parts = 0;
+    std::vector<typename Triangulation<dim>::cell_iterator> front;
+    for (const auto &first : mesh.cell_iterators_on_level(0))
+      if (part_of_cell[first->index()] == numbers::invalid_unsigned_int)
         {
-          part_of_cell[first->active_cell_index()] = n_parts;
+          part_of_cell[first->index()] = n_parts;
           front.push_back(first);
           while (!front.empty())
             {
@@ -291,10 +296,8 @@ namespace Friction
               for (const unsigned int f : cell->face_indices())
                 if (!cell->at_boundary(f))
                   {
-                    const typename Triangulation<dim>::active_cell_iterator
-                                  neighbor = cell->neighbor(f);
-                    unsigned int &part =
-                      part_of_cell[neighbor->active_cell_index()];
+                    const auto    neighbor = cell->neighbor(f);
+                    unsigned int &part     = part_of_cell[neighbor->index()];
                     if (part == numbers::invalid_unsigned_int)
                       {
                         part = n_parts;
@@ -309,157 +312,93 @@ namespace Friction
 
 
 
-  namespace
+  template <int dim>
+  Eigen::MatrixXd
+  FreePart<dim>::displacements_at(const Point<dim> &p) const
   {
-    template <int dim>
-    Eigen::VectorXd
-    as_vector(const Tensor<1, dim> &v)
-    {
-      Eigen::VectorXd result(dim);
-      for (unsigned int d = 0; d < dim; ++d)
-        result[d] = v[d];
-      return result;
-    }
+    return all_motions_at(*this, p) * motions;
+  }
 
 
 
-    // Everything about one part: its free motions, loads, and contact.
-    template <int dim>
-    class FreePart
-    {
-    public:
-      explicit FreePart(const Scene<dim> &scene)
-        : scene(scene)
-        , cell_values(
-            fe, QGauss<dim>(3), update_quadrature_points | update_JxW_values)
-        , face_values(fe,
-                      QGauss<dim - 1>(3),
-                      update_quadrature_points | update_JxW_values |
-                        update_normal_vectors)
-      {}
-
-      // An orthonormal basis of the motions that displacements allow.
-      Eigen::MatrixXd
-      free_motions(
-        const Part<dim>          &part,
-        const Triangulation<dim> &mesh,
-        const std::vector<typename Triangulation<dim>::active_cell_iterator>
-          &cells) const
+  template <int dim>
+  std::vector<FreePart<dim>>
+  free_parts(const Scene<dim>          &scene,
+             const Triangulation<dim>  &mesh,
+             std::vector<unsigned int> &part_of_cell)
+  {
+    std::vector<FreePart<dim>> parts(find_parts(mesh, part_of_cell));
+    for (const auto &cell : mesh.cell_iterators_on_level(0))
       {
-        (void)mesh;
-        Eigen::MatrixXd gram =
-          Eigen::MatrixXd::Zero(n_motions<dim>, n_motions<dim>);
-        const auto prescribe = [&](const Point<dim>  &p,
+        FreePart<dim> &part = parts[part_of_cell[cell->index()]];
+        for (const unsigned int v : cell->vertex_indices())
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const double x     = cell->vertex(v)[d];
+              const bool   first = part.n_cells == 0 && v == 0;
+              part.lower[d]      = first ? x : std::min(part.lower[d], x);
+              part.upper[d]      = first ? x : std::max(part.upper[d], x);
+            }
+        ++part.n_cells;
+        part.materials.insert(cell->material_id());
+        for (const auto &face : cell->face_iterators())
+          if (face->at_boundary())
+            part.boundary_ids.insert(face->boundary_id());
+      }
+
+    // Each component that is prescribed in a vertex is an equation for the
+    // motions.
+    std::vector<Eigen::MatrixXd> equations(
+      parts.size(), Eigen::MatrixXd::Zero(n_motions<dim>, n_motions<dim>));
+    for (const auto &cell : mesh.cell_iterators_on_level(0))
+      {
+        const unsigned int number    = part_of_cell[cell->index()];
+        const auto         prescribe = [&](const Point<dim>  &p,
                                    const unsigned int component) {
           const Eigen::VectorXd row =
-            part.motions_at(p).row(component).transpose();
-          gram += row * row.transpose();
+            all_motions_at(parts[number], p).row(component).transpose();
+          equations[number] += row * row.transpose();
         };
-        for (const unsigned int c : part.cells)
-          {
-            for (const auto &face : cells[c]->face_iterators())
-              if (face->at_boundary())
-                for (const auto &condition : scene.dirichlet_conditions())
-                  if (face->boundary_id() == condition.boundary_id)
-                    for (const unsigned int v : face->vertex_indices())
-                      for (unsigned int d = 0; d < dim; ++d)
-                        if (condition.components[d])
-                          prescribe(face->vertex(v), d);
-            for (const auto &pin : scene.pinned_points())
-              for (const unsigned int v : cells[c]->vertex_indices())
-                if (cells[c]->vertex(v).distance(pin.point) <
-                    1e-8 * cells[c]->diameter())
-                  prescribe(pin.point, pin.component);
-          }
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
-        unsigned int                                         n_free = 0;
-        while (n_free < n_motions<dim> &&
-               eigen.eigenvalues()[n_free] <=
-                 1e-10 * std::max(1., eigen.eigenvalues()[n_motions<dim> - 1]))
-          ++n_free;
-        return eigen.eigenvectors().leftCols(n_free);
+        for (const auto &face : cell->face_iterators())
+          if (face->at_boundary())
+            for (const auto &condition : scene.dirichlet_conditions())
+              if (face->boundary_id() == condition.boundary_id)
+                for (const unsigned int v : face->vertex_indices())
+                  for (unsigned int d = 0; d < dim; ++d)
+                    if (condition.components[d])
+                      prescribe(face->vertex(v), d);
+        for (const auto &pin : scene.pinned_points())
+          for (const unsigned int v : cell->vertex_indices())
+            if (cell->vertex(v).distance(pin.point) < 1e-8 * cell->diameter())
+              prescribe(pin.point, pin.component);
       }
 
-      // What loads and contact do along the given motions.
-      Holding
-      holding(
-        const Part<dim> &part,
-        const std::vector<typename Triangulation<dim>::active_cell_iterator>
-                              &cells,
-        const Eigen::MatrixXd &motions)
+    std::vector<FreePart<dim>> result;
+    for (unsigned int number = 0; number < parts.size(); ++number)
       {
-        Eigen::VectorXd loads = Eigen::VectorXd::Zero(motions.cols());
-        std::vector<Eigen::VectorXd> normals;
-        Vector<double>               load(dim);
-        const auto add_load = [&](const Function<dim>     &function,
-                                  const FEValuesBase<dim> &values) {
-          for (const unsigned int q : values.quadrature_point_indices())
-            {
-              const Point<dim> &p = values.quadrature_point(q);
-              function.vector_value(p, load);
-              Eigen::VectorXd force(dim);
-              for (unsigned int d = 0; d < dim; ++d)
-                force[d] = load[d] * values.JxW(q);
-              loads +=
-                motions.transpose() * part.motions_at(p).transpose() * force;
-            }
-        };
-        for (const unsigned int c : part.cells)
-          {
-            if (scene.body_force() != nullptr)
-              {
-                cell_values.reinit(cells[c]);
-                add_load(*scene.body_force(), cell_values);
-              }
-            for (const unsigned int f : cells[c]->face_indices())
-              if (cells[c]->at_boundary(f))
-                {
-                  const auto face       = cells[c]->face(f);
-                  const auto id         = face->boundary_id();
-                  const bool is_contact = id == scene.contact_boundary_id();
-                  bool       has_load   = false;
-                  for (const auto &condition : scene.traction_conditions())
-                    has_load |= id == condition.boundary_id;
-                  if (!is_contact && !has_load)
-                    continue;
-                  face_values.reinit(cells[c], f);
-                  for (const auto &condition : scene.traction_conditions())
-                    if (id == condition.boundary_id)
-                      add_load(*condition.traction, face_values);
-                  if (!is_contact || scene.obstacle().empty())
-                    continue;
-                  for (const unsigned int v : face->vertex_indices())
-                    {
-                      const Point<dim>    &p = face->vertex(v);
-                      const Tensor<1, dim> outward =
-                        face_values.normal_vector(0);
-                      const Tensor<1, dim> normal =
-                        scene.contact_normal() == ContactNormal::body
-                        ? outward
-                        : scene.obstacle().normal(p);
-                      if (normal * outward > Obstacle<dim>::flattest_cosine &&
-                          std::isfinite(scene.obstacle().gap(p, normal)))
-                        normals.push_back(motions.transpose() *
-                                          part.motions_at(p).transpose() *
-                                          as_vector<dim>(normal));
-                    }
-                }
-          }
-        Eigen::MatrixXd contact(motions.cols(), normals.size());
-        for (unsigned int p = 0; p < normals.size(); ++p)
-          contact.col(p) = normals[p];
-        return held_by_contact(loads, contact);
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+          equations[number]);
+        const Eigen::VectorXd &values = eigen.eigenvalues();
+        unsigned int           n_free = 0;
+        while (n_free < n_motions<dim> &&
+               values[n_free] <=
+                 1e-10 * std::max(1., values[n_motions<dim> - 1]))
+          ++n_free;
+        if (n_free == 0)
+          continue;
+        FreePart<dim> &part = parts[number];
+        part.number         = number;
+        part.n_all_cells    = mesh.n_cells(0);
+        part.motions = simple_basis(eigen.eigenvectors().leftCols(n_free));
+        result.push_back(part);
       }
-
-    private:
-      const Scene<dim> &scene;
-      const FE_Q<dim>   fe{1};
-      FEValues<dim>     cell_values;
-      FEFaceValues<dim> face_values;
-    };
+    return result;
+  }
 
 
 
+  namespace
+  {
     template <typename Ids>
     std::string
     list(const Ids &ids)
@@ -469,98 +408,83 @@ namespace Friction
         text += (text.empty() ? "" : ", ") + std::to_string(id);
       return text;
     }
+
+
+
+    template <int dim>
+    bool
+    has_contact(const Scene<dim> &scene, const FreePart<dim> &part)
+    {
+      return part.boundary_ids.count(scene.contact_boundary_id()) > 0 &&
+        !scene.obstacle().empty();
+    }
   } // namespace
 
 
 
   template <int dim>
-  void
-  check_that_body_is_held(const Scene<dim>         &scene,
-                          const Triangulation<dim> &mesh,
-                          const std::string        &where)
+  std::string
+  not_held(const Scene<dim>                                   &scene,
+           const FreePart<dim>                                &part,
+           const Holding                                      &holding,
+           const std::function<bool(const Eigen::VectorXd &)> &is_stopped)
   {
-    std::vector<typename Triangulation<dim>::active_cell_iterator> cells;
-    for (const auto &cell : mesh.active_cell_iterators())
-      cells.push_back(cell);
+    // Several free motions are listed, if nothing but displacements could stop
+    // them; one that contact leaves is described as it is.
+    std::string what;
+    if (!holding.is_driven)
+      for (unsigned int i = 0; i < part.motions.cols(); ++i)
+        if (!is_stopped(Eigen::VectorXd::Unit(part.motions.cols(), i)))
+          what += (what.empty() ? "" : " and ") +
+            describe_motion<dim>(part.motions.col(i), part);
+    if (what.empty())
+      what = describe_motion<dim>(part.motions * holding.motion, part);
+
+    std::ostringstream name;
+    if (part.n_cells == part.n_all_cells)
+      name << "the body";
+    else
+      {
+        name << "the part of the body in "
+             << describe<dim>(part.lower, size(part)) << " to "
+             << describe<dim>(part.upper, size(part)) << " (" << part.n_cells
+             << " of " << part.n_all_cells << " coarse cells, which share no "
+             << (dim == 2 ? "edge" : "face") << " with the others";
+        if (part.materials.size() > 1 || *part.materials.begin() > 0)
+          name << ", physical id " << list(part.materials);
+        name << ")";
+      }
+    return name.str() + " is not held against " + what + ": " +
+      (holding.is_driven ? "its loads push it there, and " : "") +
+      "neither a displacement " +
+      (has_contact(scene, part) ? "nor contact stops it"
+                                : "nor an obstacle stops it") +
+      "; prescribe a displacement on one of its boundaries (" +
+      list(part.boundary_ids) +
+      ") in 'Boundary conditions/Displacement', or of a vertex in 'Boundary "
+      "conditions/Pinned points'.";
+  }
+
+
+
+  template <int dim>
+  void
+  check_that_body_can_be_held(const Scene<dim>         &scene,
+                              const Triangulation<dim> &mesh,
+                              const std::string        &where)
+  {
     std::vector<unsigned int> part_of_cell;
-    const unsigned int        n_parts = find_parts(mesh, part_of_cell);
-
-    std::vector<Part<dim>> parts(n_parts);
-    for (unsigned int c = 0; c < cells.size(); ++c)
-      {
-        Part<dim> &part = parts[part_of_cell[c]];
-        for (const unsigned int v : cells[c]->vertex_indices())
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              const double x     = cells[c]->vertex(v)[d];
-              const bool   first = part.cells.empty() && v == 0;
-              part.lower[d]      = first ? x : std::min(part.lower[d], x);
-              part.upper[d]      = first ? x : std::max(part.upper[d], x);
-            }
-        part.cells.push_back(c);
-        part.materials.insert(cells[c]->material_id());
-        for (const auto &face : cells[c]->face_iterators())
-          if (face->at_boundary())
-            part.boundary_ids.insert(face->boundary_id());
-      }
-
-    FreePart<dim> free_part(scene);
-    for (const Part<dim> &part : parts)
-      {
-        const Eigen::MatrixXd motions =
-          simple_basis(free_part.free_motions(part, mesh, cells));
-        if (motions.cols() == 0)
-          continue;
-        const Holding holding = free_part.holding(part, cells, motions);
-        if (holding.motion.size() == 0)
-          continue;
-
-        // Several free motions are listed, if nothing but displacements could
-        // stop them; one that contact leaves is described as it is.
-        std::string  what;
-        unsigned int n_listed = 0;
-        if (!holding.is_driven)
-          for (unsigned int i = 0; i < motions.cols(); ++i)
-            {
-              const Eigen::MatrixXd one = motions.col(i);
-              if (free_part.holding(part, cells, one).motion.size() == 0)
-                continue;
-              what += (n_listed > 0 ? " and " : "") +
-                describe_motion<dim>(motions.col(i), part);
-              ++n_listed;
-            }
-        if (n_listed == 0)
-          what = describe_motion<dim>(motions * holding.motion, part);
-
-        std::ostringstream name;
-        if (n_parts == 1)
-          name << "the body";
-        else
-          {
-            name << "the part of the body in "
-                 << describe<dim>(part.lower, part.size()) << " to "
-                 << describe<dim>(part.upper, part.size()) << " ("
-                 << part.cells.size() << " of " << cells.size()
-                 << " coarse cells, which share no "
-                 << (dim == 2 ? "edge" : "face") << " with the others";
-            if (part.materials.size() > 1 || *part.materials.begin() > 0)
-              name << ", physical id " << list(part.materials);
-            name << ")";
-          }
-        const bool has_contact =
-          part.boundary_ids.count(scene.contact_boundary_id()) > 0 &&
-          !scene.obstacle().empty();
-        throw InputError(
-          where + name.str() + " is not held against " + what + ": " +
-          (holding.is_driven ? "its loads push it there, and " : "") +
-          "neither a displacement " +
-          (has_contact ? "nor contact stops it" : "nor an obstacle stops it") +
-          "; prescribe a displacement on one of its boundaries (" +
-          list(part.boundary_ids) +
-          ") in 'Boundary conditions/Displacement', or of a vertex in "
-          "'Boundary "
-          "conditions/Pinned points'.");
-      }
+    for (const FreePart<dim> &part : free_parts(scene, mesh, part_of_cell))
+      if (!has_contact(scene, part))
+        {
+          Holding holding;
+          holding.motion = Eigen::VectorXd::Unit(part.motions.cols(), 0);
+          throw InputError(
+            where +
+            not_held<dim>(scene, part, holding, [](const Eigen::VectorXd &) {
+              return false;
+            }));
+        }
   }
 
 
@@ -569,10 +493,28 @@ namespace Friction
                                    std::vector<unsigned int> &);
   template unsigned int find_parts(const Triangulation<3> &,
                                    std::vector<unsigned int> &);
-  template void         check_that_body_is_held(const Scene<2> &,
-                                                const Triangulation<2> &,
-                                                const std::string &);
-  template void         check_that_body_is_held(const Scene<3> &,
-                                                const Triangulation<3> &,
-                                                const std::string &);
+  template struct FreePart<2>;
+  template struct FreePart<3>;
+  template std::vector<FreePart<2>> free_parts(const Scene<2> &,
+                                               const Triangulation<2> &,
+                                               std::vector<unsigned int> &);
+  template std::vector<FreePart<3>> free_parts(const Scene<3> &,
+                                               const Triangulation<3> &,
+                                               std::vector<unsigned int> &);
+  template std::string
+  not_held(const Scene<2> &,
+           const FreePart<2> &,
+           const Holding &,
+           const std::function<bool(const Eigen::VectorXd &)> &);
+  template std::string
+                not_held(const Scene<3> &,
+                         const FreePart<3> &,
+                         const Holding &,
+                         const std::function<bool(const Eigen::VectorXd &)> &);
+  template void check_that_body_can_be_held(const Scene<2> &,
+                                            const Triangulation<2> &,
+                                            const std::string &);
+  template void check_that_body_can_be_held(const Scene<3> &,
+                                            const Triangulation<3> &,
+                                            const std::string &);
 } // namespace Friction

@@ -7,15 +7,17 @@
 
 #include <Eigen/Core>
 
+#include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
 namespace Friction
 {
   /**
-   * The parts of a body: for each cell of a mesh the number of its part. Cells
-   * belong together if they share a face; a common vertex or edge is a hinge,
-   * around which elasticity does not keep parts from turning.
+   * The parts of a body: for each coarse cell of a mesh the number of its part.
+   * Cells belong together if they share a face; a common vertex or edge is a
+   * hinge, around which elasticity does not keep parts from turning.
    * @return the number of parts.
    */
   template <int dim>
@@ -56,19 +58,63 @@ namespace Friction
   Holding held_by_contact(const Eigen::VectorXd &loads,
                           const Eigen::MatrixXd &contact);
 
+  /** A part of the body that prescribed displacements do not hold. */
+  template <int dim>
+  struct FreePart
+  {
+    /// Its number, as find_parts() gives them.
+    unsigned int number;
+
+    /// A basis of the rigid motions that are left, as columns; see motion_at().
+    Eigen::MatrixXd motions;
+
+    /// For sentences: a box around it, its coarse cells and those of the body,
+    /// its physical ids and those of its boundary.
+    Point<dim>                   lower, upper;
+    unsigned int                 n_cells = 0, n_all_cells = 0;
+    std::set<types::material_id> materials;
+    std::set<types::boundary_id> boundary_ids;
+
+    /** What the motions do at a point: dim rows, a column for each. */
+    Eigen::MatrixXd displacements_at(const Point<dim> &p) const;
+  };
+
   /**
-   * Throws InputError if a part of the body can be moved as a rigid one, and
-   * neither what is prescribed nor contact stops it: names the part, the motion
-   * and what would hold it. Contact is judged with the normals, gaps and loads
-   * of the coarse mesh, without friction.
-   *
-   * @param scene  with its boundary conditions and obstacle.
-   * @param mesh   the whole coarse mesh, on this process.
+   * The parts of a body that boundary conditions leave a rigid motion; usually
+   * none.
+   * @param mesh          whose coarse cells all processes know.
+   * @param part_of_cell  on return as that of find_parts().
    */
   template <int dim>
-  void check_that_body_is_held(const Scene<dim>         &scene,
-                               const Triangulation<dim> &mesh,
-                               const std::string        &where);
+  std::vector<FreePart<dim>>
+  free_parts(const Scene<dim>          &scene,
+             const Triangulation<dim>  &mesh,
+             std::vector<unsigned int> &part_of_cell);
+
+  /**
+   * That a part is not held, as a sentence: the part, the motions, and what
+   * would hold it.
+   * @param is_stopped  whether the motion with such coefficients, of the basis
+   *                    in the part, is stopped in both directions by contact.
+   */
+  template <int dim>
+  std::string
+  not_held(const Scene<dim>                                   &scene,
+           const FreePart<dim>                                &part,
+           const Holding                                      &holding,
+           const std::function<bool(const Eigen::VectorXd &)> &is_stopped);
+
+  /**
+   * Throws InputError if a part of the body can be moved as a rigid one, and no
+   * contact boundary could ever stop it. Where one could, loads and contact of
+   * the discrete problem decide, see check_that_body_is_held().
+   *
+   * @param mesh  whose coarse cells all processes know.
+   */
+  template <int dim>
+  void check_that_body_can_be_held(const Scene<dim>         &scene,
+                                   const Triangulation<dim> &mesh,
+                                   const std::string        &where);
 } // namespace Friction
 
 #endif

@@ -364,7 +364,7 @@ namespace Friction
                            "that is no vertex of the coarse mesh; correct it.");
       }
     check_pinned_points(mesh, here);
-    check_that_body_is_held(*this, mesh, here);
+    check_that_body_can_be_held(*this, mesh, here);
   }
 
 

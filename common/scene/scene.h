@@ -93,7 +93,7 @@ namespace Friction
      * the coarse mesh and set its boundary ids and manifolds. Throws
      * InputError if the mesh lacks a boundary id or a pinned point that the
      * scene mentions, or if a part of the body can move as a rigid one, see
-     * check_that_body_is_held().
+     * check_that_body_can_be_held().
      */
     void make_coarse_mesh(Triangulation<dim> &triangulation) const;
 

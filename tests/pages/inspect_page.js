@@ -121,15 +121,18 @@ function inspectNextFrame() {
   requestAnimationFrame(() => requestAnimationFrame(inspect));
 }
 
-// MathJax comes after the page. The last signal of its start is that all formulas
-// are set; asked for later, it is given at once.
+// MathJax comes after the page, and is through when its queue is empty, or, on a
+// machine that is busy, has not yet put its work there; it gets three more seconds
+// as long as there is anything left to set.
 const waiting = document.querySelector('script[src*="MathJax.js"]');
 (function wait(turns) {
   if (!waiting)
     inspectNextFrame();
-  else if (window.MathJax && MathJax.Hub && MathJax.Hub.Register)
-    MathJax.Hub.Register.StartupHook(
-      "End", () => MathJax.Hub.Queue(inspectNextFrame));
+  else if (window.MathJax && MathJax.isReady)
+    MathJax.Hub.Queue(() =>
+      turns > 270 && /\\[([]/.test(document.body.innerText)
+        ? setTimeout(wait, 100, turns - 1)
+        : inspectNextFrame());
   else if (turns === 0)
     done(["MathJax has not been loaded"]);
   else
