@@ -40,7 +40,7 @@ namespace Friction
       for (std::size_t i = n - window; i < n; ++i)
         if (cycles[i].increment < .5 * cycles[n - 1 - window].increment)
           return false;
-      return true;
+      return cycles.back().increment > .9 * cycles[n - 1 - window].increment;
     }
 
 

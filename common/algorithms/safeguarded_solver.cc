@@ -190,6 +190,7 @@ namespace Friction
         .solve(u, state, progress);
 
     budget = std::make_shared<CycleBudget>(settings.total_cycles);
+    budget->begin_attempt();
     const PhaseCosts   before        = phase_costs(problem.communicator());
     const bool         coulomb       = problem.has_coulomb_friction();
     const VectorType   initial       = u;
@@ -226,9 +227,8 @@ namespace Friction
           settings.algorithm == Algorithm::fixed_point;
         bool slow_corrections =
           !outer_failure && (!coulomb || !phases_change(report));
-        if (!slow_corrections && !outer_failure)
+        if (!slow_corrections && !outer_failure && budget->begin_attempt())
           {
-            budget->begin_attempt();
             report           = attempt(name + " with short steps",
                              cautious,
                              fallback_settings(),

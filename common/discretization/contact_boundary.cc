@@ -168,10 +168,8 @@ namespace Friction
             const Tensor<1, dim> outward = normal / normal.norm();
             node.frame[0] = scene.contact_normal() == ContactNormal::body
               ? outward
-              : scene.obstacle().normal(entry.second);
-            // From the far side of the body the way to the obstacle leads
-            // through the body.
-            if (node.frame[0] * outward > Obstacle<dim>::flattest_cosine)
+              : scene.obstacle().normal(entry.second, outward);
+            if (node.frame[0].norm() > 0.)
               add_node(node, constraints, scene);
           }
     });
@@ -194,10 +192,6 @@ namespace Friction
     for (unsigned int d = 0; d < dim; ++d)
       if (constraints.is_prescribed(node.node, d) && std::abs(normal[d]) < 1e-8)
         normal[d] = 0.;
-    const double gap = scene.obstacle().gap(node.point, normal);
-    if (!std::isfinite(gap))
-      return;
-
     Tensor<1, dim>              prescribed_value;
     std::vector<Tensor<1, dim>> prescribed_tangents;
     for (unsigned int d = 0; d < dim; ++d)
@@ -209,6 +203,21 @@ namespace Friction
           e[d] = 1.;
           prescribed_tangents.push_back(e);
         }
+
+    // A node that is held in some directions moves in the others: where it is
+    // that it meets the obstacle, it does so in these.
+    if (scene.contact_normal() == ContactNormal::obstacle &&
+        !constraints.is_fixed(node.node))
+      {
+        for (const auto &e : prescribed_tangents)
+          normal -= (normal * e) * e;
+        if (normal.norm() < Obstacle<dim>::flattest_cosine)
+          return;
+        normal /= normal.norm();
+      }
+    const double gap = scene.obstacle().gap(node.point, normal);
+    if (!std::isfinite(gap))
+      return;
 
     if (constraints.is_fixed(node.node))
       {

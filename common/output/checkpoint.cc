@@ -237,7 +237,7 @@ namespace Friction
           });
         if (before != old.end())
           old.erase(before);
-        old.erase(std::find(old.begin(), old.end(), level));
+        old.erase(std::remove(old.begin(), old.end(), level), old.end());
         remove(old);
       });
     });

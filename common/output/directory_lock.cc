@@ -70,7 +70,8 @@ namespace Friction
   void
   DirectoryLock::lock(const std::string &directory)
   {
-    while (descriptor < 0)
+    // Some file systems give a file another number each time it is looked at.
+    for (unsigned int attempt = 0; descriptor < 0; ++attempt)
       {
         const int opened =
           ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
@@ -97,7 +98,7 @@ namespace Friction
           sentence = "Warning: the directory '" + directory +
             "' cannot be locked (" + std::string(std::strerror(error)) +
             "); see to it that no other run writes into it.";
-        if (error != 0 || has_its_name(opened, file))
+        if (error != 0 || has_its_name(opened, file) || attempt > 10)
           descriptor = opened;
         else
           ::close(opened);

@@ -91,6 +91,14 @@ namespace Friction
     for (const std::string &warning :
          warnings_at_end(discretization, displacement, state))
       the_console.warning(warning);
+
+    // Nothing that is still called a solution: something has not held the body.
+    const ContactGeometry geometry =
+      contact_geometry(discretization, displacement, state);
+    if (!(geometry.displacement <= 1e3 * geometry.size))
+      throw InputError(
+        "the body would move by more than a thousand times its size; are the "
+        "loads in the units of the stiffness, and is it held well enough?");
   }
 
 

@@ -291,6 +291,18 @@ namespace Friction
 
 
 
+    // Loads are expressions, which may have no value somewhere.
+    template <int dim>
+    void
+    add_cells_together(ProblemTables             &tables,
+                       const Discretization<dim> &discretization)
+    {
+      on_all_processes(discretization.constraints().communicator(),
+                       [&]() { add_cells(tables, discretization); });
+    }
+
+
+
     template <int dim>
     void
     add_contact(ProblemTables                         &tables,
@@ -446,7 +458,7 @@ namespace Friction
     const std::vector<ContactRecord<dim>> &own_contact) const
   {
     ProblemTables own;
-    add_cells(own, discretization);
+    add_cells_together(own, discretization);
     add_nodes(own, discretization, displacement);
     add_contact(own, discretization.scene(), own_contact);
     gather_and_write(directory.file(verification_file_name(level)),

@@ -24,9 +24,10 @@ namespace Friction
     // first, and do not matter if they are flatter than the second; degrees.
     constexpr double smallest_corner = 40., smallest_edge = 3.;
 
-    // Where a round body touches a flat obstacle, the normals of nodes at the rim
-    // of the contact zone differ by some degrees, to both sides. Beyond this it is
-    // a slope, or a corner: ten degrees change a ratio of forces by 0.18.
+    // Where a round body touches a flat obstacle, the normals of nodes at the
+    // rim of the contact zone differ by some degrees, to both sides. Beyond
+    // this it is a slope, or a corner: ten degrees change a ratio of forces by
+    // 0.18.
     constexpr double large_angle = 10.; // degrees
 
     // Relative to the largest displacement at the contact boundary, and to the
@@ -94,16 +95,41 @@ namespace Friction
 
 
 
+    // The diagonal of a box around the body.
+    template <int dim>
+    double
+    body_size(const Discretization<dim> &discretization)
+    {
+      std::vector<double> box(2 * dim, -std::numeric_limits<double>::max());
+      for (const auto &cell :
+           discretization.dof_handler().active_cell_iterators())
+        if (cell->is_locally_owned())
+          for (const unsigned int v : cell->vertex_indices())
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                box[d]       = std::max(box[d], cell->vertex(v)[d]);
+                box[dim + d] = std::max(box[dim + d], -cell->vertex(v)[d]);
+              }
+      max_over_processes(box, discretization.constraints().communicator());
+      double square = 0;
+      for (unsigned int d = 0; d < dim; ++d)
+        square += std::pow(box[d] + box[dim + d], 2);
+      return std::sqrt(square);
+    }
+
+
+
     // The coarse mesh is known to all processes.
     template <int dim>
     void
     warn_of_cracks(const parallel::distributed::Triangulation<dim> &mesh,
                    std::vector<std::string>                        &warnings)
     {
-      double smallest = std::numeric_limits<double>::max();
+      double shortest = std::numeric_limits<double>::max();
       for (const auto &cell : mesh.cell_iterators_on_level(0))
-        smallest = std::min(smallest, cell->diameter());
-      const double unit = 1e-6 * smallest;
+        for (unsigned int line = 0; line < cell->n_lines(); ++line)
+          shortest = std::min(shortest, cell->line(line)->diameter());
+      const double unit = 1e-3 * shortest;
 
       std::map<std::array<std::int64_t, dim>, unsigned int> faces;
       unsigned int                                          n_pairs = 0;
@@ -216,11 +242,10 @@ namespace Friction
         "and "
         "is 'Contact/Boundary id' the right one?");
 
-    double     depth = 0, size = 0;
+    double     depth = 0;
     Point<dim> where;
     for (const ContactNode<dim> &p : discretization.contact())
       {
-        size = std::max(size, std::abs(p.gap) + p.point.norm());
         if (-p.gap > depth)
           {
             depth = -p.gap;
@@ -228,8 +253,7 @@ namespace Friction
           }
       }
     const auto deepest = largest<dim>(communicator, depth, where);
-    size               = Utilities::MPI::max(size, communicator);
-    if (deepest.first > 1e-6 * size)
+    if (deepest.first > 1e-10 * body_size(discretization))
       warnings.push_back("Warning: the body lies inside the obstacle before it "
                          "is loaded, at " +
                          describe(deepest.second) + " by " +
@@ -267,27 +291,15 @@ namespace Friction
           continue;
         result.angle = std::max(
           result.angle,
-          degrees(contact[p].normal() * obstacle.normal(contact[p].point)));
-        const Point<dim> moved    = contact[p].point + u;
-        const double     distance = obstacle.gap(moved, obstacle.normal(moved));
+          degrees(contact[p].normal() *
+                  obstacle.normal(contact[p].point, contact[p].normal())));
+        const Point<dim> moved = contact[p].point + u;
+        const double     distance =
+          obstacle.gap(moved, obstacle.normal(moved, contact[p].normal()));
         result.distance = std::max(result.distance, std::abs(distance));
       }
 
-    // The box, and the largest displacement.
-    std::vector<double> box(2 * dim, -std::numeric_limits<double>::max());
-    for (const auto &cell :
-         discretization.dof_handler().active_cell_iterators())
-      if (cell->is_locally_owned())
-        for (const unsigned int v : cell->vertex_indices())
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              box[d]       = std::max(box[d], cell->vertex(v)[d]);
-              box[dim + d] = std::max(box[dim + d], -cell->vertex(v)[d]);
-            }
-    max_over_processes(box, communicator);
-    for (unsigned int d = 0; d < dim; ++d)
-      result.size += std::pow(box[d] + box[dim + d], 2);
-    result.size         = std::sqrt(result.size);
+    result.size         = body_size(discretization);
     result.displacement = displacement.linfty_norm();
     result.n_contact    = Utilities::MPI::sum(result.n_contact, communicator);
     result.angle        = Utilities::MPI::max(result.angle, communicator);
@@ -330,7 +342,7 @@ namespace Friction
         number(g.angle) +
         " degrees off that of the obstacle, so that forces do not obey the law "
         "of friction; set 'Contact/Contact normal = obstacle'.");
-    if (g.distance > large_distance * g.contact_displacement)
+    if (g.distance > large_distance * g.contact_displacement + 1e-12 * g.size)
       warnings.push_back(
         "Warning: displaced as they are, nodes in contact are up to " +
         number(g.distance) +

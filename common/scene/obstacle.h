@@ -157,38 +157,39 @@ namespace Friction
     /**
      * The unit vector from @p p straight towards the (nearest part of the)
      * obstacle; from inside, the one that led there. Beyond the end of a rod,
-     * to where it would be if it were longer. There must be an obstacle.
+     * to where it would be if it were longer.
+     * @param outward  if given, the normal of a body in @p p: only those parts
+     * of the obstacle count that it faces, and not those to which the way leads
+     *   through the body. Zero if there is none.
      */
     Tensor<1, dim>
-    normal(const Point<dim> &p) const
+    normal(const Point<dim>     &p,
+           const Tensor<1, dim> &outward = Tensor<1, dim>()) const
     {
-      Assert(!empty(), ExcMessage("There is no obstacle to point to."));
       Tensor<1, dim> nearest;
       double         smallest = std::numeric_limits<double>::infinity();
+      const auto     consider = [&](const double          distance,
+                                const Tensor<1, dim> &direction) {
+        const bool faces =
+          outward.norm() == 0. || direction * outward > flattest_cosine;
+        if (distance < smallest && faces)
+          {
+            smallest = distance;
+            nearest  = direction;
+          }
+      };
       for (const Plane &plane : planes)
-        {
-          const double distance = plane.normal * (plane.point - p);
-          if (distance < smallest)
-            {
-              smallest = distance;
-              nearest  = plane.normal;
-            }
-        }
+        consider(plane.normal * (plane.point - p), plane.normal);
       for (const Rod &rod : rods)
         {
-          const Tensor<1, dim> to_axis  = across(rod, rod.center - p);
-          const double         distance = to_axis.norm() - rod.radius;
-          if (distance < smallest && to_axis.norm() > 0.)
-            {
-              smallest = distance;
-              nearest  = to_axis / to_axis.norm();
-            }
+          const Tensor<1, dim> to_axis = across(rod, rod.center - p);
+          if (to_axis.norm() > 0.)
+            consider(to_axis.norm() - rod.radius, to_axis / to_axis.norm());
         }
       return nearest;
     }
 
   private:
-
     /// The part of a vector perpendicular to the axis of a rod.
     static Tensor<1, dim>
     across(const Rod &rod, const Tensor<1, dim> &v)

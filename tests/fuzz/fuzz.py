@@ -303,8 +303,9 @@ class Fuzzer:
                     'results/history.h5'):
                 done = subprocess.run([sys.executable, self.a.verify, 'results'],
                                       stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-                if done.returncode == 1:
-                    problem = 'certificate refuted'
+                if done.returncode != 0:
+                    problem = ('certificate refuted' if done.returncode == 1
+                               else 'no verdict')
                     result = (result[0], result[1], done.stdout.decode())
             self.outcomes[result[0]] = self.outcomes.get(result[0], 0) + 1
             if problem:

@@ -224,9 +224,22 @@ def make_meshes():
     arc = [(-1, .2, 0), (0, 0, 0), (1, .2, 0)]
     top = [(-1, 1, 0), (0, 1, 0), (1, 1, 0)]
     write_mesh('polygon.msh', arc + top, long_edges + cells)
+    write_mesh('negative.msh', SQUARE, [(kind, -i if kind == LINE and i < 3 else i, v)
+                                        for kind, i, v in square])
+    write_mesh('twice-turned.msh', SQUARE, square + [(QUAD, 7, (2, 3, 4, 1))])
+    columns = [(x, y, 0) for x in (0, 1, .6, 1.7) for y in (0, 1)]
+    write_mesh('folded-over.msh', columns, [
+        (LINE, 3, (1, 3)), (LINE, 4, (2, 4)), (QUAD, 1, (1, 3, 4, 2)),
+        (QUAD, 1, (3, 5, 6, 4)), (QUAD, 1, (5, 7, 8, 6))])
     # Files.
     with open('square.msh', 'rb') as f:
         good = f.read()
+    with open('comments.msh', 'wb') as f:
+        f.write(b'\xef\xbb\xbf$Comments\nof a user\n$EndComments\n\n' +
+                good.replace(b'\n', b'\r\n'))
+    with open('partitioned.msh', 'wb') as f:
+        f.write(good.replace(b'$Nodes', b'$PartitionedEntities\n0\n'
+                             b'$EndPartitionedEntities\n$Nodes', 1))
     for name, content in [('text', b'This is no mesh.\n'), ('empty', b''),
                           ('half', good[:len(good) // 2]),
                           ('version', good.replace(b'2.2 0 8', b'4 0 8')),
@@ -285,6 +298,27 @@ CASES = [
     (1, 'load that tips the body over', 'pressed',
      {D: '0: 0, free', T: '', B: '0, 0.02*(x-1.1)'}, 'good', []),
     (1, 'load towards the obstacle', 'pressed', {}, 'good', []),
+    (1, 'load that only a finer mesh sees', 'pressed',
+     {T: '3: 0, (abs(x-.6)<.1 ? -.001 : 0)'}, 'good', []),
+    (1, 'load that a finer mesh sees the other way round', 'pressed',
+     {'Scene/Size': '1, 1', 'Scene/Subdivisions': '1, 1',
+      T: '3: 0, (abs(x-.5)<.05 ? -.001 : .0003)'}, 'error', ['its loads push it']),
+    (1, 'discs smaller than a cell', 'pressed',
+     {'Obstacle/Kind': 'rods', 'Obstacle/Centers': '.5, -.1; 1.5, -.1',
+      'Obstacle/Radius': '.1', N: 'body', D: '0: 0, free'}, 'good', []),
+    (1, 'tall body on a small foot', 'pressed',
+     {'Scene/Size': '1, 1200', 'Scene/Subdivisions': '1, 300', D: '',
+      P: '(0, 0): 0, free', T: '3: 0, -1e-9', 'Refinement/Initial refinements': '1'},
+     'good', []),
+    (2, 'obstacle above and below', 'moved',
+     {'Scene/Size': '4, .1', 'Scene/Subdivisions': '8, 1', 'Obstacle/Kind': 'rods',
+      'Obstacle/Centers': '2, -.5; 2, .75', 'Obstacle/Radius': '.5', D: '0: 0, 0',
+      T: '1: 0, .00005', 'Contact/Boundary id': '3'}, 'warning',
+     ['the largest displacement']),
+    (2, 'disc beside a plane of symmetry', 'pressed',
+     {'Scene/Size': '1, 1', 'Scene/Subdivisions': '2, 2', 'Obstacle/Kind': 'rods',
+      'Obstacle/Centers': '.4, -.1', 'Obstacle/Radius': '.1', T: '',
+      D: '0: 0, free; 3: 0, -.01'}, 'good', []),
     (1, 'weight on the obstacle', 'pressed', {T: '', B: '0, -0.01'}, 'good', []),
     (1, 'load towards the obstacle, 3D', 'pressed 3d', {}, 'good', []),
     (1, 'load past the obstacle, 3D', 'pressed 3d', {T: '5: 0, 0, 0.01'}, 'error',
@@ -325,6 +359,12 @@ CASES = [
      ['give the scene to step-friction-3d']),
     (5, 'mesh of two dimensions', 'mesh 3d', mesh('square'), 'error',
      ['give the scene to step-friction-2d']),
+    (5, 'cell folded over its neighbour', 'mesh', mesh('folded-over'), 'error',
+     ['two cells on the same side']),
+    (5, 'negative ids', 'mesh', mesh('negative'), 'good', []),
+    (5, 'cell in two groups, turned', 'mesh', mesh('twice-turned'), 'good', []),
+    (5, 'partitioned', 'mesh', mesh('partitioned'), 'error', ['is partitioned']),
+    (5, 'comments first', 'mesh', mesh('comments'), 'good', []),
     (5, 'interior curve', 'mesh', mesh('interior'), 'good', []),
     (5, 'interior curve that is used', 'mesh',
      mesh('interior', **{T: '8: 0, 0'}), 'error', ['lie inside the body']),

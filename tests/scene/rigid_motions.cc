@@ -88,7 +88,7 @@ namespace
             (columns * pressures - loads).norm() < 1e-9 * loads.norm())
           return true;
       }
-    if (nodes.size() == contact.rows())
+    if (nodes.size() == static_cast<std::size_t>(contact.rows()))
       return false;
     for (unsigned int p = first; p < contact.cols(); ++p)
       {

@@ -89,7 +89,10 @@ def check_normals(verdict, found, exact):
     verdict.check("given", np.abs(np.linalg.norm(normals, axis=1) - 1), exact,
                   "a normal is no unit vector", found.x)
     if level.contact_normal == "obstacle":
-        _, towards = level.obstacle.nearest(found.x)
+        _, towards = level.obstacle.nearest(found.x, boundary.normal[nodes])
+        # Where a node is held in some directions, in those that are left.
+        towards = np.where(level.is_prescribed[nodes], 0, towards)
+        towards /= np.maximum(np.linalg.norm(towards, axis=1), 1e-300)[:, None]
         verdict.check("given", np.abs(normals - towards).max(axis=1, initial=0), exact,
                       "a normal does not point straight to the obstacle", found.x)
     else:

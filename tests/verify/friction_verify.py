@@ -34,6 +34,7 @@ Exit status: 0 confirmed, 1 refuted, 2 if there is nothing that could be read.
 
 import argparse
 import sys
+import traceback
 from pathlib import Path
 
 try:
@@ -117,6 +118,9 @@ def main():
     except NotReadable as error:
         print(f"friction-verify: {error}", file=sys.stderr)
         return 2
+    except Exception:  # Not 1, which would say that the run is wrong.
+        traceback.print_exc()
+        return 3
 
 
 if __name__ == "__main__":

@@ -46,9 +46,10 @@ class Obstacle:
                 gap = np.where(meets, np.minimum(gap, distance), gap)
         return gap
 
-    def nearest(self, x):
+    def nearest(self, x, outward):
         """The distance of points x from it, negative inside, and unit vectors towards
-        the nearest plane or axis, however long rods are."""
+        the nearest plane or axis that a body with these normals faces, however long
+        rods are."""
         smallest = np.full(len(x), np.inf)
         normals = np.zeros(x.shape)
         pieces = [((point - x) @ normal, np.tile(normal, (len(x), 1)))
@@ -60,7 +61,7 @@ class Obstacle:
             pieces.append((norm - radius,
                            to_axis / np.where(norm > 0, norm, 1)[:, None]))
         for distance, direction in pieces:
-            nearer = distance < smallest
+            nearer = (distance < smallest) & (np.sum(direction * outward, axis=1) > .05)
             smallest[nearer], normals[nearer] = distance[nearer], direction[nearer]
         return smallest, normals
 

@@ -52,6 +52,12 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
                  np.broadcast_to(bounds, len(level.contact_nodes)),
                  level.friction_bounds)
 
+    def boundary_id(key):
+        """Names of groups are known to the mesh file only."""
+        if not key.strip().isdigit():
+            raise NotUnderstood(key)
+        return int(key)
+
     def displacement():
         is_set, values = np.zeros((len(X), dim), bool), np.zeros((len(X), dim))
 
@@ -65,7 +71,7 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
             is_set[new] = True
 
         for key, components in scene.conditions("Boundary conditions/Displacement"):
-            prescribe(np.unique(level.boundary_faces[level.boundary_ids == int(key)]),
+            prescribe(np.unique(level.boundary_faces[level.boundary_ids == boundary_id(key)]),
                       components)
         size = np.linalg.norm(X[level.cells[:, 0]] - X[level.cells[:, -1]], axis=1)
         for key, components in scene.conditions("Boundary conditions/Pinned points"):
@@ -88,7 +94,7 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
             body = scene.vector_field(components, points)
         values, _ = corner_functions(gauss_points(4, dim - 1)[0])
         for key, components in scene.conditions("Boundary conditions/Traction"):
-            part = level.boundary_faces[level.boundary_ids == int(key)]
+            part = level.boundary_faces[level.boundary_ids == boundary_id(key)]
             points = np.einsum("qv,kvd->kqd", values, X[part]).reshape(-1, dim)
             faces.append(part)
             tractions.append(scene.vector_field(components, points))
