@@ -97,7 +97,7 @@ class Faults:
         return words
 
     def start(self, *arguments, longest_file=None, **keywords):
-        """In a session of its own, with the output in files."""
+        """In a process group of its own, with the output in files."""
         limited, environment = longest_file is not None, dict(os.environ)
         if limited:
             # Processes exchange messages without files, which may be longer.
