@@ -35,6 +35,7 @@ namespace
     p.obstacle.normal      = {0., -1.};
     p.contact.boundary     = "0";
     p.contact.friction_law = FrictionLaw::none;
+    p.contact.normal       = ContactNormal::body;
     p.boundary_conditions.displacement.push_back({"1", {"0", "-0.0062"}});
     return p;
   }

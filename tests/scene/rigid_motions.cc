@@ -229,7 +229,7 @@ namespace
     p.scene.subdivisions = {2, 1, 1};
     pins = {{"(0, 0, 0)", {"0", "0", "0"}}, {"(2, 0, 0)", {"free", "0", "0"}}};
     check(verdict<3>(p) ==
-            "a rotation around the axis through (0, 0, 0) in x direction",
+            "a rotation around the axis through (1, 0, 0) in x direction",
           "two vertices are an axis");
     pins.push_back({"(0, 1, 0)", {"free", "free", "0"}});
     check(verdict<3>(p) == "held", "and three vertices hold");
