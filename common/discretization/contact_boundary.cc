@@ -205,15 +205,16 @@ namespace Friction
         }
 
     // A node that is held in some directions moves in the others: where it is
-    // that it meets the obstacle, it does so in these.
+    // that it meets the obstacle, it does so in these. If there are none to
+    // meet it in, it competes with contact, see below.
     if (scene.contact_normal() == ContactNormal::obstacle &&
         !constraints.is_fixed(node.node))
       {
+        Tensor<1, dim> in_others = normal;
         for (const auto &e : prescribed_tangents)
-          normal -= (normal * e) * e;
-        if (normal.norm() < Obstacle<dim>::flattest_cosine)
-          return;
-        normal /= normal.norm();
+          in_others -= (in_others * e) * e;
+        if (in_others.norm() > Obstacle<dim>::flattest_cosine)
+          normal = in_others / in_others.norm();
       }
     const double gap = scene.obstacle().gap(node.point, normal);
     if (!std::isfinite(gap))
