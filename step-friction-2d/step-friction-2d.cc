@@ -5,13 +5,13 @@
 // contact problem are the same in two and three dimensions, and belong to the
 // library that comes with this program.
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/symmetric_tensor.h>
+#include <deal.II/base/table.h>
 #include <deal.II/base/timer.h>
 
 #include <deal.II/distributed/tria.h>
 
 #include <deal.II/fe/fe_values.h>
-
-#include <deal.II/lac/full_matrix.h>
 
 // Its headers are named after the one subject each of them has, and its folders
 // build on one another.
@@ -192,50 +192,49 @@ namespace StepFriction2d
   // elasticity, for friction and contact do not appear in the stiffness matrix:
   // they only restrict what the solution may do at the nodes of the contact
   // boundary. It is $a(u,v)=\int \lambda\, \mathrm{div}\,u\,\mathrm{div}\,v +
-  // 2\mu\,\varepsilon(u):\varepsilon(v)$; written with the gradients $g_i$ of
-  // the scalar shape functions of components $c_i$ its entries are
-  // $\lambda\, \theta_i\theta_j + \mu\, g_{i,c_j} g_{j,c_i} +
-  // \mu\,\delta_{c_ic_j} g_i\cdot g_j$, where
-  // $\theta_i=\mathrm{div}\,\varphi_i=g_{i,c_i}$. Only if a scene says
-  // <code>Material/Volumetric strain = mean</code>, because its material is
-  // nearly incompressible, $\theta_i$ is the mean of the divergence over the
-  // cell.
+  // 2\mu\,\varepsilon(u):\varepsilon(v)$. All components of a displacement have
+  // the same shape functions, one per vertex of a cell, so that we ask for the
+  // gradients $g_a$ of these only, and compute for each pair of vertices the
+  // $d\times d$ block $\lambda\,\theta_a\theta_b^T + \mu\, g_b g_a^T +
+  // \mu\,(g_a\cdot g_b)\, I$. Its entry $(i,j)$ is what
+  // <code>FESystem</code> would have for the pair of component $i$ of the one
+  // and component $j$ of the other vertex; component $i$ of $\theta_a$ is the
+  // divergence of the former, which is that of the gradient, $\theta_a=g_a$.
+  // Only if a scene says <code>Material/Volumetric strain = mean</code>,
+  // because its material is nearly incompressible, $\theta_a$ is the mean of
+  // the gradient over the cell. Blocks above the diagonal follow from those
+  // below.
   //
-  // The loop over cells, loads and hanging nodes are those of step-40, with one
-  // exception that has been mentioned: prescribed values are not passed on to
-  // <code>distribute_local_to_global()</code>, or their rows would be gone, and
-  // with them the reactions at the nodes that are held.
+  // The loop over cells, loads and hanging nodes do what those of step-40 do,
+  // by blocks and with one exception that has been mentioned: prescribed values
+  // are not eliminated, or their rows would be gone, and with them the
+  // reactions at the nodes that are held.
   template <int dim>
   void
   ContactProblem<dim>::assemble()
   {
-    const double     lambda = scene.material().lambda();
-    const double     mu     = scene.material().mu();
-    Table<2, double> theta;
+    const double             lambda = scene.material().lambda();
+    const double             mu     = scene.material().mu();
+    const Tensor<2, dim>     unit   = unit_symmetric_tensor<dim>();
+    Table<2, Tensor<1, dim>> theta;
 
-    discretization.assemble([&](const FEValues<dim> &fe_values,
-                                FullMatrix<double>  &cell_matrix) {
-      const FiniteElement<dim> &fe = fe_values.get_fe();
-      shape_volumetric_strains(fe_values, scene.material(), theta);
-      for (const unsigned int q : fe_values.quadrature_point_indices())
-        for (const unsigned int i : fe_values.dof_indices())
-          {
-            const Tensor<1, dim> g_i = fe_values.shape_grad(i, q);
-            const unsigned int   c_i = fe.system_to_component_index(i).first;
-            for (const unsigned int j : fe_values.dof_indices_ending_at(i))
-              {
-                const Tensor<1, dim> g_j = fe_values.shape_grad(j, q);
-                const unsigned int c_j = fe.system_to_component_index(j).first;
-                cell_matrix(i, j) += (lambda * theta(i, q) * theta(j, q) +
-                                      mu * g_i[c_j] * g_j[c_i] +
-                                      (c_i == c_j ? mu * (g_i * g_j) : 0.)) *
-                  fe_values.JxW(q);
-              }
-          }
-      for (const unsigned int i : fe_values.dof_indices())
-        for (const unsigned int j : fe_values.dof_indices_ending_at(i))
-          cell_matrix(j, i) = cell_matrix(i, j);
-    });
+    discretization.assemble(
+      [&](const FEValues<dim> &fe_values, CellBlocks<dim> &cell_blocks) {
+        shape_volumetric_strains(fe_values, scene.material(), theta);
+        for (const unsigned int q : fe_values.quadrature_point_indices())
+          for (const unsigned int a : fe_values.dof_indices())
+            {
+              const Tensor<1, dim> g_a = fe_values.shape_grad(a, q);
+              for (const unsigned int b : fe_values.dof_indices_ending_at(a))
+                {
+                  const Tensor<1, dim> g_b = fe_values.shape_grad(b, q);
+                  cell_blocks(a, b) +=
+                    (lambda * outer_product(theta(a, q), theta(b, q)) +
+                     mu * outer_product(g_b, g_a) + mu * (g_a * g_b) * unit) *
+                    fe_values.JxW(q);
+                }
+            }
+      });
   }
 
 

@@ -13,12 +13,11 @@
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
 
-#include <deal.II/lac/full_matrix.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
 #include <deal.II/lac/vector.h>
 
 #include <deal.II/numerics/vector_tools.h>
 
+#include <utility>
 #include <vector>
 
 namespace Friction
@@ -125,55 +124,47 @@ namespace Friction
               }
     prescribed.close();
 
-    // The sparsity pattern knows about hanging nodes but not about prescribed
-    // displacements, whose rows and columns are kept. It comes before there is
-    // a matrix, because with several processes it says whose displacements a
-    // process has to know: all that the rows of its nodes couple to. Usually
-    // these are the nodes of its own cells and of their neighbours, the locally
-    // relevant ones of step-40. But a row to which a hanging node has been
-    // condensed reaches all cells around that node, and one of them may be
-    // farther away.
-    make_stiffness_pattern(dofs, hanging, pattern);
+    // What the rows of the matrix couple to, hanging nodes condensed. It comes
+    // before there is a matrix, because with several processes it says whose
+    // displacements a process has to know.
+    assembler         = std::make_unique<LeafAssembler<dim>>(dofs, hanging);
     nodal_constraints = std::make_unique<NodalConstraints<dim>>(
-      dofs, hanging, prescribed, coupled_dofs(dofs, pattern));
+      dofs, hanging, prescribed, assembler->coupled_dofs());
   }
 
 
 
+  // The components of a displacement have the same shape functions, those of
+  // the scalar element, and all integrals are by pairs of vertices. That is a
+  // good deal less than what FESystem would compute.
   template <int dim>
   void
   Discretization<dim>::assemble(const CellForm<dim> &bilinear_form)
   {
-    Timer                          timer;
-    TrilinosWrappers::SparseMatrix matrix;
-    matrix.reinit(dofs.locally_owned_dofs(),
-                  dofs.locally_owned_dofs(),
-                  pattern,
-                  Compatibility::mpi_communicator(dofs));
+    Assert(assembler != nullptr, ExcMessage("Call set_up() first."));
+    Timer timer;
     forces.reinit(nodal_constraints->partitioner());
+    assembler->begin(*nodal_constraints);
 
     // For the stiffness, two quadrature points per direction are enough. Given
     // tractions are arbitrary expressions from a scene file and get some more.
+    const FE_Q<dim>       scalar(1);
     const QGauss<dim>     quadrature(fe.degree + 1);
     const QGauss<dim - 1> face_quadrature(fe.degree + 3);
     FEValues<dim>         fe_values(the_mapping,
-                            fe,
+                            scalar,
                             quadrature,
                             update_values | update_gradients |
                               update_quadrature_points | update_JxW_values);
     FEFaceValues<dim>     face_values(the_mapping,
-                                  fe,
+                                  scalar,
                                   face_quadrature,
                                   update_values | update_quadrature_points |
                                     update_JxW_values);
 
-    const unsigned int                   dofs_per_cell = fe.n_dofs_per_cell();
-    FullMatrix<double>                   cell_matrix(dofs_per_cell);
-    Vector<double>                       cell_forces(dofs_per_cell), load(dim);
-    std::vector<types::global_dof_index> indices(dofs_per_cell);
-    std::vector<unsigned int>            component(dofs_per_cell);
-    for (unsigned int i = 0; i < dofs_per_cell; ++i)
-      component[i] = fe.system_to_component_index(i).first;
+    CellBlocks<dim>                         cell_blocks;
+    typename LeafAssembler<dim>::CellForces cell_forces;
+    Vector<double>                          load(dim);
 
     // The integral of a load over a cell or a face.
     const auto add_load = [&](const Function<dim>     &function,
@@ -181,53 +172,48 @@ namespace Friction
       for (const unsigned int q : values.quadrature_point_indices())
         {
           function.vector_value(values.quadrature_point(q), load);
-          for (unsigned int i = 0; i < dofs_per_cell; ++i)
-            cell_forces(i) +=
-              load[component[i]] * values.shape_value(i, q) * values.JxW(q);
+          for (unsigned int a = 0; a < cell_forces.size(); ++a)
+            for (unsigned int c = 0; c < dim; ++c)
+              cell_forces[a][c] +=
+                load[c] * values.shape_value(a, q) * values.JxW(q);
         }
     };
 
     // A load that is no finite number somewhere is an error of all processes.
     on_all_processes(Compatibility::mpi_communicator(dofs), [&]() {
-      for (const auto &cell : dofs.active_cell_iterators())
+      for (const auto &cell : mesh.active_cell_iterators())
         if (cell->is_locally_owned())
           {
-            cell_matrix = 0.;
-            cell_forces = 0.;
+            cell_blocks.set_zero();
+            cell_forces.fill(Tensor<1, dim>());
             fe_values.reinit(cell);
-            bilinear_form(fe_values, cell_matrix);
+            bilinear_form(fe_values, cell_blocks);
             if (the_scene.body_force() != nullptr)
               add_load(*the_scene.body_force(), fe_values);
 
             // What the obstacle exerts is not among the loads. It is a
             // reaction, and will be found in Au - f.
-            for (const unsigned int f : cell->face_indices())
-              if (cell->face(f)->at_boundary())
-                for (const auto &condition : the_scene.traction_conditions())
-                  if (cell->face(f)->boundary_id() == condition.boundary_id)
-                    {
-                      face_values.reinit(cell, f);
-                      add_load(*condition.traction, face_values);
-                    }
+            if (cell->at_boundary())
+              for (const unsigned int f : cell->face_indices())
+                if (cell->face(f)->at_boundary())
+                  for (const auto &condition : the_scene.traction_conditions())
+                    if (cell->face(f)->boundary_id() == condition.boundary_id)
+                      {
+                        face_values.reinit(cell, f);
+                        add_load(*condition.traction, face_values);
+                      }
 
             // Hanging nodes are condensed in the matrix and in the loads alike.
-            // If prescribed displacements were passed on as well, as in
+            // If prescribed displacements were eliminated as well, as in
             // step-40, their rows would now be gone, and with them the
             // reactions at the nodes that are held.
-            cell->get_dof_indices(indices);
-            hanging.distribute_local_to_global(
-              cell_matrix, cell_forces, indices, matrix, forces);
+            assembler->add(cell_blocks, cell_forces, forces);
           }
     });
-    matrix.compress(VectorOperation::add);
-    forces.compress(VectorOperation::add);
-
-    // Trilinos has gathered the contributions of all processes, and has done
-    // its part.
-    leaf_operator = LeafOperator<dim>(
-      make_node_block_matrix<dim>(matrix, pattern, *nodal_constraints),
-      *nodal_constraints);
-    pattern.reinit(0, 0);
+    assembler->finish(forces);
+    leaf_operator =
+      LeafOperator<dim>(std::move(assembler->matrix()), *nodal_constraints);
+    assembler.reset();
     check_that_body_is_held(*this);
     seconds_of_assembly = timer.wall_time();
   }

@@ -4,6 +4,7 @@
 #include <common/discretization/contact_boundary.h>
 #include <common/discretization/discrete_problem.h>
 #include <common/discretization/elasticity.h>
+#include <common/discretization/leaf_matrix.h>
 #include <common/nodes/leaf_operator.h>
 #include <common/nodes/nodal_constraints.h>
 #include <common/scene/scene.h>
@@ -16,7 +17,6 @@
 #include <deal.II/fe/mapping_q.h>
 
 #include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/dynamic_sparsity_pattern.h>
 
 #include <memory>
 
@@ -76,7 +76,7 @@ namespace Friction
      * constraints and the contact boundary. */
     void set_up();
 
-    /** Assembles stiffness and loads.
+    /** Assembles stiffness and loads, once after each set_up().
      * @param bilinear_form  whose matrix has to be symmetric and positive
      *                       definite on the displacements that are prescribed
      *                       to be zero where something is prescribed. */
@@ -167,9 +167,11 @@ namespace Friction
     const FESystem<dim>       fe;
     DoFHandler<dim>           dofs;
     AffineConstraints<double> hanging;
-    DynamicSparsityPattern    pattern;
     LeafOperator<dim>         leaf_operator;
     VectorType                forces;
+
+    // From set_up() to assemble().
+    std::unique_ptr<LeafAssembler<dim>> assembler;
 
     std::unique_ptr<NodalConstraints<dim>> nodal_constraints;
     std::unique_ptr<ContactBoundary<dim>>  contact_boundary;

@@ -1,10 +1,4 @@
 #include <common/discretization/elasticity.h>
-#include <common/discretization/volumetric_strain.h>
-
-#include <deal.II/base/table.h>
-#include <deal.II/base/tensor.h>
-
-#include <deal.II/fe/fe.h>
 
 #include <vector>
 
@@ -12,56 +6,51 @@ namespace Friction
 {
   using namespace dealii;
 
-  // With the gradients g_i of the scalar shape functions of components c_i an
-  // entry is lambda theta_i theta_j + mu g_i[c_j] g_j[c_i]
-  // + mu delta(c_i,c_j) g_i.g_j. What belongs to one shape function is asked
-  // for once per quadrature point, and not for each pair, and the matrix is
-  // symmetric.
+  // With the gradients g_a of the shape functions the block of the vertices a
+  // and b is the integral of lambda g_a g_b^T + mu g_b g_a^T + mu (g_a.g_b) I.
+  // All three follow from the integral G of g_a g_b^T, if lambda and mu are
+  // constants: the second is its transpose, the third its trace. This is a
+  // quarter of the work at each quadrature point. If the volumetric strain is
+  // the mean over the cell, the first is the product of the integrals of g_a
+  // and g_b, divided by the volume.
   template <int dim>
   CellForm<dim>
   elasticity(const Material &material)
   {
-    return [material](const FEValues<dim> &fe_values,
-                      FullMatrix<double>  &cell_matrix) {
-      struct Shape
-      {
-        unsigned int   component;
-        Tensor<1, dim> gradient;
-        double         theta;
-      };
-      const double       lambda = material.lambda(), mu = material.mu();
-      const unsigned int n_dofs = fe_values.dofs_per_cell;
-      Table<2, double>   theta;
-      shape_volumetric_strains(fe_values, material, theta);
-      std::vector<Shape> shapes(n_dofs);
-      for (unsigned int i = 0; i < n_dofs; ++i)
-        shapes[i].component =
-          fe_values.get_fe().system_to_component_index(i).first;
+    return [material](const FEValues<dim> &fe_values, CellBlocks<dim> &blocks) {
+      const double lambda = material.lambda(), mu = material.mu();
+      const bool   is_mean =
+        material.volumetric_strain() == VolumetricStrain::mean;
+      constexpr unsigned int n = CellBlocks<dim>::n_vertices;
 
-      std::vector<double> sums(n_dofs * (n_dofs + 1) / 2, 0.);
+      std::array<Tensor<1, dim>, n> gradients, integrals;
+      double                        volume = 0.;
       for (const unsigned int q : fe_values.quadrature_point_indices())
         {
-          for (unsigned int i = 0; i < n_dofs; ++i)
+          const double JxW = fe_values.JxW(q);
+          volume += JxW;
+          for (unsigned int a = 0; a < n; ++a)
             {
-              shapes[i].gradient = fe_values.shape_grad(i, q);
-              shapes[i].theta    = theta(i, q);
+              gradients[a]                  = fe_values.shape_grad(a, q);
+              const Tensor<1, dim> weighted = gradients[a] * JxW;
+              integrals[a] += weighted;
+              for (unsigned int b = 0; b <= a; ++b)
+                for (unsigned int r = 0; r < dim; ++r)
+                  for (unsigned int c = 0; c < dim; ++c)
+                    blocks(a, b)[r][c] += weighted[r] * gradients[b][c];
             }
-          const double JxW   = fe_values.JxW(q);
-          double      *entry = sums.data();
-          for (auto i = shapes.begin(); i != shapes.end(); ++i)
-            for (auto j = shapes.begin(); j <= i; ++j)
-              *entry++ +=
-                (lambda * i->theta * j->theta +
-                 mu * i->gradient[j->component] * j->gradient[i->component] +
-                 (i->component == j->component
-                    ? mu * (i->gradient * j->gradient)
-                    : 0.)) *
-                JxW;
         }
-      const double *entry = sums.data();
-      for (unsigned int i = 0; i < n_dofs; ++i)
-        for (unsigned int j = 0; j <= i; ++j)
-          cell_matrix(i, j) = cell_matrix(j, i) = *entry++;
+      for (unsigned int a = 0; a < n; ++a)
+        for (unsigned int b = 0; b <= a; ++b)
+          {
+            const Tensor<2, dim> G = blocks(a, b);
+            blocks(a, b)           = mu * transpose(G) +
+              (is_mean
+                 ? lambda / volume * outer_product(integrals[a], integrals[b])
+                 : lambda * G);
+            for (unsigned int d = 0; d < dim; ++d)
+              blocks(a, b)[d][d] += mu * trace(G);
+          }
     };
   }
 

@@ -1,123 +1,360 @@
 #include <common/compatibility.h>
 #include <common/discretization/leaf_matrix.h>
 
-#include <deal.II/dofs/dof_tools.h>
-
-#include <deal.II/lac/sparsity_tools.h>
+#include <deal.II/base/mpi.h>
 
 #include <algorithm>
 
 namespace Friction
 {
+  namespace
+  {
+    template <typename Number>
+    void
+    sort_and_make_unique(std::vector<Number> &numbers)
+    {
+      std::sort(numbers.begin(), numbers.end());
+      numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+    }
+
+
+
+    // Where the block of a column is that the row is known to have. Half of all
+    // steps of a search go one way and half the other, which no processor can
+    // guess; this one has no jumps that depend on what it finds.
+    inline std::size_t
+    position(const NodePattern &pattern,
+             const unsigned int row,
+             const unsigned int column)
+    {
+      const unsigned int *const begin = pattern.columns.data();
+      const unsigned int       *it    = begin + pattern.starts[row];
+      if (*it == column)
+        return it - begin;
+      ++it;
+      std::size_t n = begin + pattern.starts[row + 1] - it;
+      while (n > 1)
+        {
+          const std::size_t half = n / 2;
+          it                     = it[half] <= column ? it + half : it;
+          n -= half;
+        }
+      Assert(*it == column, ExcInternalError());
+      return it - begin;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  LeafAssembler<dim>::LeafAssembler(const DoFHandler<dim> &dof_handler,
+                                    const AffineConstraints<double> &hanging)
+    : owned_dofs(dof_handler.locally_owned_dofs())
+    , communicator(Compatibility::mpi_communicator(dof_handler))
+    , coupled(dof_handler.n_dofs())
+  {
+    // The degrees of freedom of a node have consecutive numbers, dim to a node.
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        for (const unsigned int v : cell->vertex_indices())
+          {
+            const auto dof = cell->vertex_dof_index(v, 0);
+            vertex_nodes.push_back(dof / dim);
+            if (hanging.is_constrained(dof) &&
+                masters.find(dof / dim) == masters.end())
+              for (const auto &entry : *hanging.get_constraint_entries(dof))
+                masters[dof / dim].emplace_back(entry.first / dim,
+                                                entry.second);
+          }
+    if (Utilities::MPI::n_mpi_processes(communicator) > 1)
+      exchange_patterns();
+  }
+
+
+
+  // Numbers of nodes are those of make_numbers_local(), or still global ones.
   template <int dim>
   void
-  make_stiffness_pattern(const DoFHandler<dim>           &dof_handler,
-                         const AffineConstraints<double> &hanging,
-                         DynamicSparsityPattern          &pattern)
+  LeafAssembler<dim>::collect_shares(const std::size_t cell)
   {
-    const IndexSet relevant =
-      DoFTools::extract_locally_relevant_dofs(dof_handler);
-    pattern.reinit(dof_handler.n_dofs(), dof_handler.n_dofs(), relevant);
-    DoFTools::make_sparsity_pattern(dof_handler,
-                                    pattern,
-                                    hanging,
-                                    /*keep constrained dofs =*/false);
-    SparsityTools::distribute_sparsity_pattern(
-      pattern,
-      dof_handler.locally_owned_dofs(),
-      Compatibility::mpi_communicator(dof_handler),
-      relevant);
+    shares.clear();
+    for (unsigned int v = 0; v < n_vertices; ++v)
+      {
+        const GlobalNode node = vertex_nodes[cell * n_vertices + v];
+        const auto its = masters.empty() ? masters.end() : masters.find(node);
+        if (its == masters.end())
+          shares.push_back({static_cast<unsigned int>(node), v, 1.});
+        else
+          for (const auto &master : its->second)
+            shares.push_back(
+              {static_cast<unsigned int>(master.first), v, master.second});
+      }
   }
 
 
 
   template <int dim>
-  IndexSet
-  coupled_dofs(const DoFHandler<dim>        &dof_handler,
-               const DynamicSparsityPattern &pattern)
+  void
+  LeafAssembler<dim>::exchange_patterns()
   {
-    const IndexSet &owned = dof_handler.locally_owned_dofs();
-    std::vector<types::global_dof_index> others;
-    for (const auto row : owned)
-      for (auto entry = pattern.begin(row); entry != pattern.end(row); ++entry)
-        if (!owned.is_element(entry->column()))
-          others.push_back(entry->column());
-    std::sort(others.begin(), others.end());
-    others.erase(std::unique(others.begin(), others.end()), others.end());
+    // The rows of others in our cells.
+    const auto is_owned = [&](const GlobalNode node) {
+      return owned_dofs.is_element(static_cast<types::global_dof_index>(node) *
+                                   dim);
+    };
+    std::map<GlobalNode, std::vector<GlobalNode>> rows;
+    for (std::size_t cell = 0; cell < vertex_nodes.size() / n_vertices; ++cell)
+      {
+        collect_shares(cell);
+        for (const Share &row : shares)
+          if (!is_owned(row.node))
+            for (const Share &column : shares)
+              rows[row.node].push_back(column.node);
+      }
 
-    // All components of a node, or none.
-    IndexSet coupled(owned.size());
-    for (const auto dof : others)
-      coupled.add_range(dof - dof % dim, dof - dof % dim + dim);
+    IndexSet foreign(owned_dofs.size());
+    for (auto &row : rows)
+      {
+        sort_and_make_unique(row.second);
+        foreign.add_index(row.first * dim);
+      }
+    foreign.compress();
+    const std::vector<unsigned int> owners =
+      Utilities::MPI::compute_index_owner(owned_dofs, foreign, communicator);
+
+    // A message is a sequence of rows: number, number of columns, columns.
+    std::map<unsigned int, std::vector<GlobalNode>> messages;
+    auto                                            owner = owners.begin();
+    for (auto &row : rows)
+      {
+        std::vector<GlobalNode> &message = messages[*owner];
+        message.push_back(row.first);
+        message.push_back(row.second.size());
+        message.insert(message.end(), row.second.begin(), row.second.end());
+        outgoing[*owner++].push_back({row.first, std::move(row.second)});
+      }
+    for (const auto &message :
+         Utilities::MPI::some_to_some(communicator, messages))
+      for (auto it = message.second.begin(); it != message.second.end();)
+        {
+          Row row;
+          row.row              = *it++;
+          const GlobalNode end = *it++;
+          row.columns.assign(it, it + end);
+          it += end;
+          for (const GlobalNode column : row.columns)
+            if (!is_owned(column))
+              coupled.add_range(column * dim, (column + 1) * dim);
+          incoming[message.first].push_back(std::move(row));
+        }
     coupled.compress();
-    return coupled;
   }
 
 
 
   template <int dim>
-  NodeBlockMatrix<dim>
-  make_node_block_matrix(const TrilinosWrappers::SparseMatrix &matrix,
-                         const DynamicSparsityPattern         &pattern,
-                         const NodalConstraints<dim>          &constraints)
+  void
+  LeafAssembler<dim>::make_numbers_local()
   {
-    const auto        &partitioner = *constraints.partitioner();
-    const unsigned int n_rows      = constraints.n_owned_nodes();
+    const auto local = [&](const GlobalNode node) {
+      return static_cast<GlobalNode>(constraints->node_of_dof(
+        static_cast<types::global_dof_index>(node) * dim));
+    };
+    for (GlobalNode &node : vertex_nodes)
+      node = local(node);
+    std::unordered_map<GlobalNode, Masters> local_masters;
+    for (auto &hanging : masters)
+      {
+        for (auto &master : hanging.second)
+          master.first = local(master.first);
+        local_masters[local(hanging.first)] = std::move(hanging.second);
+      }
+    masters.swap(local_masters);
+    for (auto *all : {&outgoing, &incoming})
+      for (auto &process : *all)
+        for (Row &row : process.second)
+          {
+            row.row = local(row.row);
+            for (GlobalNode &column : row.columns)
+              column = local(column);
+          }
+  }
 
-    auto                      blocks = std::make_shared<NodePattern>();
-    std::vector<unsigned int> row;
-    blocks->starts.reserve(n_rows + 1);
+
+
+  template <int dim>
+  void
+  LeafAssembler<dim>::make_patterns()
+  {
+    const unsigned int n_rows  = constraints->n_owned_nodes();
+    const std::size_t  n_cells = vertex_nodes.size() / n_vertices;
+
+    // The cells in which each of our rows has a share, and after that the rows
+    // of which others have found a part.
+    std::vector<std::size_t> cells_begin(n_rows + 1, 0);
+    for (std::size_t cell = 0; cell < n_cells; ++cell)
+      {
+        collect_shares(cell);
+        for (const Share &share : shares)
+          if (share.node < n_rows)
+            ++cells_begin[share.node + 1];
+      }
+    for (unsigned int i = 0; i < n_rows; ++i)
+      cells_begin[i + 1] += cells_begin[i];
+    std::vector<unsigned int> cells(cells_begin[n_rows]);
+    for (std::size_t cell = n_cells; cell-- > 0;)
+      {
+        collect_shares(cell);
+        for (const Share &share : shares)
+          if (share.node < n_rows)
+            cells[--cells_begin[share.node + 1]] = cell;
+      }
+    // Now the cells of row i begin at cells_begin[i + 1].
+    std::unordered_map<unsigned int, std::vector<GlobalNode>> from_others;
+    for (const auto &process : incoming)
+      for (const Row &row : process.second)
+        from_others[row.row].insert(
+          from_others[row.row].end(), row.columns.begin(), row.columns.end());
+
+    auto                      pattern = std::make_shared<NodePattern>();
+    std::vector<unsigned int> columns;
+    std::vector<unsigned int> last_row(constraints->n_nodes(),
+                                       numbers::invalid_unsigned_int);
+    pattern->starts.reserve(n_rows + 1);
     for (unsigned int i = 0; i < n_rows; ++i)
       {
-        row.clear();
-        if (!constraints.is_hanging(i))
+        columns.clear();
+        const auto add = [&](const unsigned int column) {
+          if (last_row[column] != i)
+            {
+              last_row[column] = i;
+              columns.push_back(column);
+            }
+        };
+        const std::size_t end =
+          i + 1 < n_rows ? cells_begin[i + 2] : cells.size();
+        for (std::size_t c = cells_begin[i + 1]; c < end; ++c)
           {
-            // The rows of the components of a node have the same pattern.
-            const auto dof = partitioner.local_to_global(dim * i);
-            for (auto entry = pattern.begin(dof); entry != pattern.end(dof);
-                 ++entry)
-              {
-                const unsigned int j = constraints.node_of_dof(entry->column());
-                if (!constraints.is_hanging(j))
-                  row.push_back(j);
-              }
-            row.push_back(i);
-            std::sort(row.begin(), row.end());
-            row.erase(std::unique(row.begin(), row.end()), row.end());
+            if (c > cells_begin[i + 1] && cells[c] == cells[c - 1])
+              continue;
+            collect_shares(cells[c]);
+            for (const Share &share : shares)
+              add(share.node);
           }
-        blocks->append_row(row);
+        const auto more = from_others.find(i);
+        if (more != from_others.end())
+          for (const GlobalNode column : more->second)
+            add(column);
+        pattern->append_row(columns);
       }
-    blocks->columns.shrink_to_fit();
+    pattern->columns.shrink_to_fit();
+    owned_pattern = pattern;
 
-    NodeBlockMatrix<dim> result(std::move(blocks));
-    for (unsigned int i = 0; i < n_rows; ++i)
-      for (std::size_t e = result.row_begin(i); e < result.row_end(i); ++e)
-        for (unsigned int c = 0; c < dim; ++c)
-          for (unsigned int r = 0; r < dim; ++r)
-            result.block(e)[c * dim + r] = matrix.el(
-              partitioner.local_to_global(dim * i + r),
-              partitioner.local_to_global(dim * result.column(e) + c));
-    return result;
+    pattern = std::make_shared<NodePattern>();
+    outgoing_row_of_ghost.assign(constraints->n_nodes() - n_rows,
+                                 numbers::invalid_unsigned_int);
+    for (const auto &process : outgoing)
+      for (const Row &row : process.second)
+        {
+          outgoing_row_of_ghost[row.row - n_rows] = pattern->n_rows();
+          columns.assign(row.columns.begin(), row.columns.end());
+          pattern->append_row(columns);
+        }
+    outgoing_pattern = pattern;
   }
 
 
 
-  template void     make_stiffness_pattern(const DoFHandler<2> &,
-                                           const AffineConstraints<double> &,
-                                           DynamicSparsityPattern &);
-  template void     make_stiffness_pattern(const DoFHandler<3> &,
-                                           const AffineConstraints<double> &,
-                                           DynamicSparsityPattern &);
-  template IndexSet coupled_dofs(const DoFHandler<2> &,
-                                 const DynamicSparsityPattern &);
-  template IndexSet coupled_dofs(const DoFHandler<3> &,
-                                 const DynamicSparsityPattern &);
-  template NodeBlockMatrix<2>
-  make_node_block_matrix(const TrilinosWrappers::SparseMatrix &,
-                         const DynamicSparsityPattern &,
-                         const NodalConstraints<2> &);
-  template NodeBlockMatrix<3>
-  make_node_block_matrix(const TrilinosWrappers::SparseMatrix &,
-                         const DynamicSparsityPattern &,
-                         const NodalConstraints<3> &);
+  template <int dim>
+  void
+  LeafAssembler<dim>::begin(const NodalConstraints<dim> &new_constraints)
+  {
+    constraints = &new_constraints;
+    make_numbers_local();
+    make_patterns();
+    owned_rows    = NodeBlockMatrix<dim>(owned_pattern);
+    outgoing_rows = NodeBlockMatrix<dim>(outgoing_pattern);
+  }
+
+
+
+  template <int dim>
+  void
+  LeafAssembler<dim>::add(CellBlocks<dim>  &blocks,
+                          const CellForces &cell_forces,
+                          VectorType       &forces)
+  {
+    AssertIndexRange(n_cells_done, vertex_nodes.size() / n_vertices);
+    const unsigned int n_owned = constraints->n_owned_nodes();
+    blocks.mirror();
+    collect_shares(n_cells_done++);
+    for (const Share &i : shares)
+      {
+        for (unsigned int d = 0; d < dim; ++d)
+          forces.local_element(dim * i.node + d) +=
+            i.weight * cell_forces[i.vertex][d];
+
+        const bool            is_owned = i.node < n_owned;
+        NodeBlockMatrix<dim> &rows     = is_owned ? owned_rows : outgoing_rows;
+        const NodePattern    &pattern =
+          is_owned ? *owned_pattern : *outgoing_pattern;
+        const unsigned int row =
+          is_owned ? i.node : outgoing_row_of_ghost[i.node - n_owned];
+        for (const Share &j : shares)
+          {
+            double *block = rows.block(position(pattern, row, j.node));
+            // Blocks are stored by columns, tensors by rows.
+            const Tensor<2, dim> &transposed = blocks(j.vertex, i.vertex);
+            const double          weight     = i.weight * j.weight;
+            for (unsigned int c = 0; c < dim; ++c)
+              for (unsigned int r = 0; r < dim; ++r)
+                block[c * dim + r] += weight * transposed[c][r];
+          }
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  LeafAssembler<dim>::finish(VectorType &forces)
+  {
+    forces.compress(VectorOperation::add);
+    if (Utilities::MPI::n_mpi_processes(communicator) > 1)
+      {
+        std::map<unsigned int, std::vector<double>> messages;
+        const unsigned int n_owned = constraints->n_owned_nodes();
+        for (const auto &process : outgoing)
+          for (const Row &row : process.second)
+            for (const GlobalNode column : row.columns)
+              {
+                const double *block = outgoing_rows.block(
+                  position(*outgoing_pattern,
+                           outgoing_row_of_ghost[row.row - n_owned],
+                           column));
+                messages[process.first].insert(
+                  messages[process.first].end(), block, block + dim * dim);
+              }
+        const auto received =
+          Utilities::MPI::some_to_some(communicator, messages);
+        for (const auto &process : incoming)
+          {
+            const double *values = received.at(process.first).data();
+            for (const Row &row : process.second)
+              for (const GlobalNode column : row.columns)
+                {
+                  double *block =
+                    owned_rows.block(position(*owned_pattern, row.row, column));
+                  for (unsigned int e = 0; e < dim * dim; ++e)
+                    block[e] += *values++;
+                }
+          }
+      }
+    outgoing_rows = NodeBlockMatrix<dim>();
+  }
+
+
+
+  template class LeafAssembler<2>;
+  template class LeafAssembler<3>;
 } // namespace Friction

@@ -1,6 +1,7 @@
 #ifndef friction_discretization_leaf_matrix_h
 #define friction_discretization_leaf_matrix_h
 
+#include <common/discretization/cell_form.h>
 #include <common/nodes/nodal_constraints.h>
 #include <common/nodes/node_block_matrix.h>
 
@@ -9,43 +10,137 @@
 #include <deal.II/dofs/dof_handler.h>
 
 #include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/dynamic_sparsity_pattern.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include <map>
+#include <memory>
+#include <unordered_map>
+#include <utility>
+#include <vector>
 
 namespace Friction
 {
   /**
-   * The sparsity pattern of the stiffness matrix: all rows of locally owned
-   * nodes, complete also where cells of other processes contribute. Hanging
-   * nodes are condensed. Collective.
+   * Assembles the stiffness matrix of the leaf mesh, and vectors of nodal
+   * forces, by node blocks; hanging nodes are condensed on the way.
+   *
+   * It does what a sparsity pattern, AffineConstraints and a matrix of Trilinos
+   * do in step-40, with one number per node where they have dim numbers of
+   * degrees of freedom, and dim*dim pairs of them. The life of an object has
+   * three parts, since the matrix says which ghosts a process needs, and these
+   * have no local numbers before that is known:
+   * @code
+   *   LeafAssembler<dim>    assembler(dof_handler, hanging);
+   *   NodalConstraints<dim> constraints(dof_handler, hanging, dirichlet,
+   *                                     assembler.coupled_dofs());
+   *   assembler.begin(constraints);
+   *   for (all locally owned active cells, in the order of the iterator)
+   *     assembler.add(blocks, cell_forces, forces);
+   *   assembler.finish(forces);       // then take matrix()
+   * @endcode
+   *
+   * With several processes each integrates over its own cells. What it finds
+   * for rows of nodes of others, those at the interfaces, it keeps beside its
+   * own rows and sends to their owners in the end, who add it in the order of
+   * the processes. Which columns these rows have is told when the object is
+   * made.
    */
   template <int dim>
-  void make_stiffness_pattern(const DoFHandler<dim>           &dof_handler,
-                              const AffineConstraints<double> &hanging,
-                              DynamicSparsityPattern          &pattern);
+  class LeafAssembler
+  {
+  public:
+    static constexpr unsigned int n_vertices = CellBlocks<dim>::n_vertices;
 
-  /** The degrees of freedom that the locally owned rows couple to. */
-  template <int dim>
-  IndexSet coupled_dofs(const DoFHandler<dim>        &dof_handler,
-                        const DynamicSparsityPattern &pattern);
+    using CellForces = std::array<Tensor<1, dim>, n_vertices>;
 
-  /**
-   * Copies an assembled matrix into node blocks. Trilinos is good at gathering
-   * contributions from all processes, node blocks are good at being relaxed;
-   * the former is no longer needed after this.
-   *
-   * The pattern that the matrix was made from is needed once more, since
-   * TrilinosWrappers::SparseMatrix allows to look up entries quickly, but not
-   * to iterate over a row in time independent of the size of the matrix.
-   *
-   * Rows and columns of hanging nodes, which are condensed and hold but a
-   * number on the diagonal, are left empty.
-   */
-  template <int dim>
-  NodeBlockMatrix<dim>
-  make_node_block_matrix(const TrilinosWrappers::SparseMatrix &matrix,
-                         const DynamicSparsityPattern         &pattern,
-                         const NodalConstraints<dim>          &constraints);
+    /** Finds the couplings. Collective.
+     * @param hanging  hanging node constraints only, known for the locally
+     *                 relevant degrees of freedom. */
+    LeafAssembler(const DoFHandler<dim>           &dof_handler,
+                  const AffineConstraints<double> &hanging);
+
+    /**
+     * The degrees of freedom of other processes that owned rows couple to, as
+     * far as they are not locally relevant. Usually there are none: rows couple
+     * to the nodes of the process' own cells and of their neighbours. But a row
+     * to which a hanging node has been condensed reaches all cells around that
+     * node, and one of them may be farther away.
+     */
+    const IndexSet &
+    coupled_dofs() const
+    {
+      return coupled;
+    }
+
+    /** Begins with a matrix of zeros. Call it once.
+     * @param constraints  the local numbers of nodes; kept by reference until
+     *                     finish(). */
+    void begin(const NodalConstraints<dim> &constraints);
+
+    /** Adds the contributions of the next cell. Of @p blocks only those of
+     * pairs of vertices (a,b) with b <= a are used, and completed.
+     * @param cell_forces  of each vertex. */
+    void add(CellBlocks<dim>  &blocks,
+             const CellForces &cell_forces,
+             VectorType       &forces);
+
+    /** Gathers what other processes have found. Collective. */
+    void finish(VectorType &forces);
+
+    /** The matrix: rows of owned nodes, columns in local numbers. Rows and
+     * columns of hanging nodes are empty. */
+    NodeBlockMatrix<dim> &
+    matrix()
+    {
+      return owned_rows;
+    }
+
+  private:
+    // A node that has a share in the value at a vertex of the present cell.
+    struct Share
+    {
+      unsigned int node;
+      unsigned int vertex;
+      double       weight;
+    };
+
+    // Columns of a row of another process, or of a part that another process
+    // has found of one of ours.
+    struct Row
+    {
+      GlobalNode              row;
+      std::vector<GlobalNode> columns;
+    };
+
+    using Masters = std::vector<std::pair<GlobalNode, double>>;
+
+    const IndexSet &owned_dofs;
+    const MPI_Comm  communicator;
+    IndexSet        coupled;
+
+    // The nodes at the vertices of the process' own cells: global numbers
+    // first, local ones from begin() on; and where hanging nodes get their
+    // values from.
+    std::vector<GlobalNode>                 vertex_nodes;
+    std::unordered_map<GlobalNode, Masters> masters;
+
+    // By process: the rows that it gets from us, and we get from it.
+    std::map<unsigned int, std::vector<Row>> outgoing, incoming;
+
+    const NodalConstraints<dim>       *constraints = nullptr;
+    std::shared_ptr<const NodePattern> owned_pattern, outgoing_pattern;
+    NodeBlockMatrix<dim>               owned_rows, outgoing_rows;
+    std::vector<unsigned int>          outgoing_row_of_ghost;
+    std::size_t                        n_cells_done = 0;
+    std::vector<Share>                 shares;
+
+    void collect_shares(const std::size_t cell);
+
+    void exchange_patterns();
+
+    void make_numbers_local();
+
+    void make_patterns();
+  };
 } // namespace Friction
 
 #endif

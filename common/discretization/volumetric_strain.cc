@@ -10,25 +10,24 @@ namespace Friction
 
   template <int dim>
   void
-  shape_volumetric_strains(const FEValues<dim> &fe_values,
-                           const Material      &material,
-                           Table<2, double>    &theta)
+  shape_volumetric_strains(const FEValues<dim>      &fe_values,
+                           const Material           &material,
+                           Table<2, Tensor<1, dim>> &theta)
   {
-    const FiniteElement<dim> &fe = fe_values.get_fe();
     theta.reinit(fe_values.dofs_per_cell, fe_values.n_quadrature_points);
-    for (unsigned int i = 0; i < fe_values.dofs_per_cell; ++i)
+    for (unsigned int a = 0; a < fe_values.dofs_per_cell; ++a)
       {
-        const unsigned int component = fe.system_to_component_index(i).first;
-        double             volume = 0., integral = 0.;
+        double         volume = 0.;
+        Tensor<1, dim> integral;
         for (const unsigned int q : fe_values.quadrature_point_indices())
           {
-            theta(i, q) = fe_values.shape_grad(i, q)[component];
+            theta(a, q) = fe_values.shape_grad(a, q);
             volume += fe_values.JxW(q);
-            integral += theta(i, q) * fe_values.JxW(q);
+            integral += theta(a, q) * fe_values.JxW(q);
           }
         if (material.volumetric_strain() == VolumetricStrain::mean)
           for (const unsigned int q : fe_values.quadrature_point_indices())
-            theta(i, q) = integral / volume;
+            theta(a, q) = integral / volume;
       }
   }
 
@@ -72,10 +71,10 @@ namespace Friction
 
   template void shape_volumetric_strains(const FEValues<2> &,
                                          const Material &,
-                                         Table<2, double> &);
+                                         Table<2, Tensor<1, 2>> &);
   template void shape_volumetric_strains(const FEValues<3> &,
                                          const Material &,
-                                         Table<2, double> &);
+                                         Table<2, Tensor<1, 3>> &);
   template class VolumetricStrainField<2>;
   template class VolumetricStrainField<3>;
 } // namespace Friction

@@ -4,6 +4,7 @@
 #include <common/parameters/material.h>
 
 #include <deal.II/base/table.h>
+#include <deal.II/base/tensor.h>
 
 #include <deal.II/dofs/dof_handler.h>
 
@@ -45,12 +46,16 @@ namespace Friction
    * shear, $2\mu\|\varepsilon(v)\|^2$, which Korn's inequality and with it the
    * error estimator rely on, and which keeps hourglass modes away.
    *
-   * @param theta one row per shape function, one column per point.
+   * @param fe_values  of the scalar element, see CellForm.
+   * @param theta      one row per vertex, one column per point; component c is
+   *                   the volumetric strain of that vertex' shape function in
+   *                   direction c.
    */
   template <int dim>
-  void shape_volumetric_strains(const dealii::FEValues<dim> &fe_values,
-                                const Material              &material,
-                                dealii::Table<2, double>    &theta);
+  void
+  shape_volumetric_strains(const dealii::FEValues<dim>              &fe_values,
+                           const Material                           &material,
+                           dealii::Table<2, dealii::Tensor<1, dim>> &theta);
 
 
 

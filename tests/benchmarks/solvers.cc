@@ -158,14 +158,14 @@ namespace Benchmark
     Scene<dim>(parameters).make_coarse_mesh(*mesh);
     const BoundingBox<dim> box = GridTools::compute_bounding_box(*mesh);
     return [box, factor, form = elasticity<dim>(parameters.material)](
-             const FEValues<dim> &fe_values, FullMatrix<double> &cell_matrix) {
-      form(fe_values, cell_matrix);
+             const FEValues<dim> &fe_values, CellBlocks<dim> &cell_blocks) {
+      form(fe_values, cell_blocks);
       const Point<dim> p = box.real_to_unit(fe_values.get_cell()->center());
       bool             inside = p[dim - 1] < 0.25;
       for (unsigned int d = 0; d + 1 < dim; ++d)
         inside = inside && std::abs(p[d] - 0.5) < 0.25;
       if (inside)
-        cell_matrix *= factor;
+        cell_blocks *= factor;
     };
   }
 
