@@ -4,6 +4,7 @@
 #include <common/discretization/leaf_matrix.h>
 #include <common/discretization/node_numbering.h>
 #include <common/parallel/collective_error.h>
+#include <common/parallel/run_clock.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/timer.h>
@@ -58,11 +59,14 @@ namespace Friction
   void
   Discretization<dim>::set_up()
   {
-    Timer timer;
+    Timer          timer;
+    const RunScope part(Compatibility::mpi_communicator(mesh), RunPart::dofs);
     dofs.distribute_dofs(fe);
     dofs.distribute_mg_dofs();
     renumber_nodes(dofs);
     find_constraints();
+    const RunScope part_of_contact(Compatibility::mpi_communicator(mesh),
+                                   RunPart::contact);
     contact_boundary = std::make_unique<ContactBoundary<dim>>(
       the_mapping, dofs, hanging, *nodal_constraints, the_scene);
     const FrictionLaw law = the_scene.friction_law();
@@ -88,6 +92,9 @@ namespace Friction
     hanging                  = Compatibility::make_constraints(owned, relevant);
     DoFTools::make_hanging_node_constraints(dofs, hanging);
     hanging.close();
+
+    const RunScope part(Compatibility::mpi_communicator(mesh),
+                        RunPart::contact);
 
     // Prescribed displacements are collected by an object of the same class,
     // because interpolate_boundary_values() wants one; it is never used for
@@ -127,7 +134,11 @@ namespace Friction
     // What the rows of the matrix couple to, hanging nodes condensed. It comes
     // before there is a matrix, because with several processes it says whose
     // displacements a process has to know.
-    assembler         = std::make_unique<LeafAssembler<dim>>(dofs, hanging);
+    {
+      const RunScope part_of_assembly(Compatibility::mpi_communicator(mesh),
+                                      RunPart::assembly);
+      assembler = std::make_unique<LeafAssembler<dim>>(dofs, hanging);
+    }
     nodal_constraints = std::make_unique<NodalConstraints<dim>>(
       dofs, hanging, prescribed, assembler->coupled_dofs());
   }
@@ -142,7 +153,9 @@ namespace Friction
   Discretization<dim>::assemble(const CellForm<dim> &bilinear_form)
   {
     Assert(assembler != nullptr, ExcMessage("Call set_up() first."));
-    Timer timer;
+    Timer          timer;
+    const RunScope part(Compatibility::mpi_communicator(mesh),
+                        RunPart::assembly);
     forces.reinit(nodal_constraints->partitioner());
     assembler->begin(*nodal_constraints);
 

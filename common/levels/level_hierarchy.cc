@@ -5,6 +5,10 @@
 #include <deal.II/grid/tria.h>
 
 #include <algorithm>
+#include <array>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
 
 namespace Friction
 {
@@ -20,12 +24,27 @@ namespace Friction
 
 
 
-  // The global numbers of the parents of owned nodes of one level; each of n
-  // parents has the weight 1/n.
+  // The global numbers of the parents of owned nodes of one level, 2^dim at
+  // most; each of n parents has the weight 1/n.
   template <int dim>
   struct LevelHierarchy<dim>::GlobalParents
   {
-    std::vector<std::vector<GlobalNode>> of_node;
+    static constexpr unsigned int most = 1u << dim;
+
+    std::vector<unsigned char> numbers;
+    std::vector<GlobalNode>    parents; ///< `most` places for each node
+
+    const GlobalNode *
+    begin(const unsigned int node) const
+    {
+      return parents.data() + most * static_cast<std::size_t>(node);
+    }
+
+    const GlobalNode *
+    end(const unsigned int node) const
+    {
+      return begin(node) + numbers[node];
+    }
   };
 
 
@@ -121,7 +140,7 @@ namespace Friction
             GlobalParents parents;
             find_parents(dof_handler, k, parents);
             number_parents(k, parents);
-            find_children(constraints, k - 1);
+            find_children(k - 1);
           }
       }
     classify_nodes(constraints, leaf);
@@ -224,36 +243,51 @@ namespace Friction
                                     const unsigned int     k,
                                     GlobalParents         &parents) const
   {
+    constexpr unsigned int  n     = GlobalParents::most;
     const NodeDistribution &owned = levels[k].nodes.distribution();
-    parents.of_node.resize(owned.n_owned());
+    parents.numbers.assign(owned.n_owned(), 0);
+    parents.parents.resize(n * static_cast<std::size_t>(owned.n_owned()));
+
+    // Which vertices of the parent have a share in vertex v of a child.
+    std::array<std::vector<unsigned int>, n * n> sharing;
+    for (unsigned int child = 0; child < n; ++child)
+      for (unsigned int v = 0; v < n; ++v)
+        for (unsigned int w = 0; w < n; ++w)
+          {
+            bool has_share = true;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                const unsigned int twice_x =
+                  ((child >> d) & 1) + ((v >> d) & 1);
+                if (twice_x + 2 * ((w >> d) & 1) == 2)
+                  has_share = false;
+              }
+            if (has_share)
+              sharing[child * n + v].push_back(w);
+          }
+
+    std::array<GlobalNode, n> vertices;
     for (const auto &cell : dof_handler.mg_cell_iterators_on_level(k - 1))
       if (cell->has_children())
-        for (unsigned int child = 0; child < cell->n_children(); ++child)
-          if (cell->child(child)->is_locally_owned_on_level())
-            for (const unsigned int v : cell->vertex_indices())
-              {
-                const GlobalNode node =
-                  cell->child(child)->mg_vertex_dof_index(k, v, 0) / dim;
-                if (!owned.is_owned(node))
-                  continue;
-                auto &row = parents.of_node[owned.local(node)];
-                if (!row.empty())
-                  continue;
-                for (const unsigned int w : cell->vertex_indices())
-                  {
-                    bool has_share = true;
-                    for (unsigned int d = 0; d < dim; ++d)
-                      {
-                        const unsigned int twice_x =
-                          ((child >> d) & 1) + ((v >> d) & 1);
-                        if (twice_x + 2 * ((w >> d) & 1) == 2)
-                          has_share = false;
-                      }
-                    if (has_share)
-                      row.push_back(cell->mg_vertex_dof_index(k - 1, w, 0) /
-                                    dim);
-                  }
-              }
+        {
+          for (unsigned int w = 0; w < n; ++w)
+            vertices[w] = cell->mg_vertex_dof_index(k - 1, w, 0) / dim;
+          for (unsigned int child = 0; child < n; ++child)
+            if (const auto finer = cell->child(child);
+                finer->is_locally_owned_on_level())
+              for (unsigned int v = 0; v < n; ++v)
+                {
+                  const GlobalNode node =
+                    finer->mg_vertex_dof_index(k, v, 0) / dim;
+                  if (!owned.is_owned(node))
+                    continue;
+                  const unsigned int i = owned.local(node);
+                  if (parents.numbers[i] == 0)
+                    for (const unsigned int w : sharing[child * n + v])
+                      parents.parents[n * static_cast<std::size_t>(i) +
+                                      parents.numbers[i]++] = vertices[w];
+                }
+        }
   }
 
 
@@ -326,7 +360,7 @@ namespace Friction
 
     auto owned_pattern    = std::make_shared<NodePattern>();
     auto outgoing_pattern = std::make_shared<NodePattern>();
-    LevelHierarchyTools::ColumnCollector collector;
+    LevelHierarchyTools::ColumnCollector collector, finer_columns;
     const unsigned int                   n_rows = level.n_local_nodes();
     owned_pattern->starts.reserve(n_owned + 1);
     for (unsigned int row = 0; row < n_rows; ++row)
@@ -342,14 +376,10 @@ namespace Friction
                 collector.add(node_of_leaf(k, other));
             }
 
-        const auto add_parents = [&](const unsigned int finer_node) {
-          const NodeWeights &parents = levels[k + 1].parent_weights;
-          for (auto p = parents.begin(finer_node); p != parents.end(finer_node);
-               ++p)
-            collector.add(p->node);
-        };
+        // The columns of P^T B first, of which there are far fewer than blocks.
         if (has_finer)
           {
+            finer_columns.begin_row();
             for (auto child = level.child_weights.begin(row);
                  child != level.child_weights.end(row);
                  ++child)
@@ -359,7 +389,7 @@ namespace Friction
                        e < leaf_matrix.row_end(child->node);
                        ++e)
                     if (finest_levels[leaf_matrix.column(e)] == k + 1)
-                      add_parents(finest_nodes[leaf_matrix.column(e)]);
+                      finer_columns.add(finest_nodes[leaf_matrix.column(e)]);
                 }
               else
                 {
@@ -367,8 +397,12 @@ namespace Friction
                   for (std::size_t e = finer.starts[child->node];
                        e < finer.starts[child->node + 1];
                        ++e)
-                    add_parents(finer.columns[e]);
+                    finer_columns.add(finer.columns[e]);
                 }
+            const NodeWeights &parents = levels[k + 1].parent_weights;
+            for (const unsigned int node : finer_columns.columns)
+              for (auto p = parents.begin(node); p != parents.end(node); ++p)
+                collector.add(p->node);
           }
 
         if (row < n_owned)
@@ -463,8 +497,7 @@ namespace Friction
     const Level   &level  = levels[k];
     NodeNumbering &coarse = levels[k - 1].nodes;
 
-    std::vector<std::vector<GlobalNode>> rows = std::move(parents.of_node);
-    rows.resize(level.n_local_nodes());
+    std::unordered_map<unsigned int, std::vector<GlobalNode>> of_ghosts;
     if (level.nodes.distribution().n_processes() > 1)
       {
         const MPI_Comm comm = level.nodes.distribution().communicator();
@@ -480,10 +513,10 @@ namespace Friction
         for (const auto &request : Utilities::MPI::some_to_some(comm, wanted))
           for (const GlobalNode node : request.second)
             {
-              const auto &row = rows[level.nodes.distribution().local(node)];
-              answers[request.first].push_back(row.size());
+              const unsigned int i = level.nodes.distribution().local(node);
+              answers[request.first].push_back(parents.numbers[i]);
               answers[request.first].insert(
-                answers[request.first].end(), row.begin(), row.end());
+                answers[request.first].end(), parents.begin(i), parents.end(i));
             }
         for (const auto &answer : Utilities::MPI::some_to_some(comm, answers))
           {
@@ -491,17 +524,32 @@ namespace Friction
             for (const unsigned int ghost : ghosts[answer.first])
               {
                 const unsigned int n = *entry++;
-                rows[ghost].assign(entry, entry + n);
+                of_ghosts[ghost].assign(entry, entry + n);
                 entry += n;
               }
           }
       }
 
-    std::vector<std::vector<NodeWeights::Entry>> weights(rows.size());
-    for (unsigned int node = 0; node < rows.size(); ++node)
-      for (const GlobalNode parent : rows[node])
-        weights[node].push_back({coarse.add(parent), 1. / rows[node].size()});
-    levels[k].parent_weights = NodeWeights(weights);
+    std::vector<unsigned int>       starts = {0};
+    std::vector<NodeWeights::Entry> entries;
+    starts.reserve(level.n_local_nodes() + 1);
+    entries.reserve(std::accumulate(
+      parents.numbers.begin(), parents.numbers.end(), std::size_t(0)));
+    const auto add_row = [&](const GlobalNode *begin, const GlobalNode *end) {
+      for (const GlobalNode *parent = begin; parent != end; ++parent)
+        entries.push_back({coarse.add(*parent), 1.f / (end - begin)});
+      starts.push_back(entries.size());
+    };
+    for (unsigned int node = 0; node < level.n_nodes(); ++node)
+      add_row(parents.begin(node), parents.end(node));
+    for (unsigned int node = level.n_nodes(); node < level.n_local_nodes();
+         ++node)
+      {
+        const std::vector<GlobalNode> &row = of_ghosts[node];
+        add_row(row.data(), row.data() + row.size());
+      }
+    levels[k].parent_weights =
+      NodeWeights(std::move(starts), std::move(entries));
   }
 
 
@@ -510,29 +558,22 @@ namespace Friction
   // if that is the finest.
   template <int dim>
   void
-  LevelHierarchy<dim>::find_children(const NodalConstraints<dim> &constraints,
-                                     const unsigned int           k)
+  LevelHierarchy<dim>::find_children(const unsigned int k)
   {
-    Level             &level   = levels[k];
-    const Level       &finer   = levels[k + 1];
-    const NodeWeights &parents = finer.parent_weights;
+    Level       &level = levels[k];
+    const Level &finer = levels[k + 1];
 
-    std::vector<std::vector<NodeWeights::Entry>> rows;
+    // Rows of the parents' weights, and their numbers as children.
+    std::vector<std::pair<unsigned int, unsigned int>> rows;
     level.has_leaf_children = (k + 2 == levels.size());
     if (level.has_leaf_children)
-      {
-        rows.resize(constraints.n_owned_nodes());
-        for (const auto &own : finer.own)
-          rows[own.leaf.number()].assign(parents.begin(own.node),
-                                         parents.end(own.node));
-      }
+      for (const auto &own : finer.own)
+        rows.emplace_back(own.node, own.leaf.number());
     else
-      {
-        rows.resize(finer.n_nodes());
-        for (unsigned int node = 0; node < finer.n_nodes(); ++node)
-          rows[node].assign(parents.begin(node), parents.end(node));
-      }
-    level.child_weights = NodeWeights(rows).transposed(level.n_local_nodes());
+      for (unsigned int node = 0; node < finer.n_nodes(); ++node)
+        rows.emplace_back(node, node);
+    level.child_weights =
+      finer.parent_weights.transposed(level.n_local_nodes(), rows);
 
     for (unsigned int node = level.n_nodes(); node < level.n_local_nodes();
          ++node)

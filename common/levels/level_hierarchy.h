@@ -303,8 +303,7 @@ namespace Friction
 
     void number_parents(const unsigned int k, GlobalParents &parents);
 
-    void find_children(const NodalConstraints<dim> &constraints,
-                       const unsigned int           k);
+    void find_children(const unsigned int k);
 
     void make_layouts();
 

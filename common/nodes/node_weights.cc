@@ -2,33 +2,31 @@
 
 namespace Friction
 {
-  NodeWeights::NodeWeights(const std::vector<std::vector<Entry>> &rows)
-  {
-    starts.reserve(rows.size() + 1);
-    for (const auto &row : rows)
-      {
-        entries.insert(entries.end(), row.begin(), row.end());
-        starts.push_back(entries.size());
-      }
-  }
+  NodeWeights::NodeWeights(std::vector<unsigned int> &&starts,
+                           std::vector<Entry>        &&entries)
+    : starts(std::move(starts))
+    , entries(std::move(entries))
+  {}
 
 
 
   NodeWeights
-  NodeWeights::transposed(const unsigned int n_columns) const
+  NodeWeights::transposed(
+    const unsigned int                                        n_columns,
+    const std::vector<std::pair<unsigned int, unsigned int>> &rows) const
   {
-    NodeWeights result;
-    result.starts.assign(n_columns + 1, 0);
-    for (const Entry &entry : entries)
-      ++result.starts[entry.node + 1];
+    // Counted, then filled: next[c] is where the next entry of row c goes.
+    std::vector<unsigned int> next(n_columns + 1, 0);
+    for (const auto &row : rows)
+      for (const Entry *e = begin(row.first); e != end(row.first); ++e)
+        ++next[e->node + 1];
     for (unsigned int c = 0; c < n_columns; ++c)
-      result.starts[c + 1] += result.starts[c];
-    result.entries.resize(entries.size());
-    std::vector<unsigned int> next(result.starts.begin(),
-                                   result.starts.end() - 1);
-    for (unsigned int row = 0; row < n_rows(); ++row)
-      for (const Entry *e = begin(row); e != end(row); ++e)
-        result.entries[next[e->node]++] = {row, e->weight};
-    return result;
+      next[c + 1] += next[c];
+    std::vector<unsigned int> new_starts = next;
+    std::vector<Entry>        new_entries(next[n_columns]);
+    for (const auto &row : rows)
+      for (const Entry *e = begin(row.first); e != end(row.first); ++e)
+        new_entries[next[e->node]++] = {row.second, e->weight};
+    return NodeWeights(std::move(new_starts), std::move(new_entries));
   }
 } // namespace Friction

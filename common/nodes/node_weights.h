@@ -2,6 +2,7 @@
 #define friction_nodes_node_weights_h
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace Friction
@@ -13,18 +14,27 @@ namespace Friction
   class NodeWeights
   {
   public:
+    /** Weights of interpolation are 1, 1/2, 1/4 and 1/8, for which half the
+     * digits are plenty. */
     struct Entry
     {
       unsigned int node;
-      double       weight;
+      float        weight;
     };
 
     NodeWeights() = default;
 
-    explicit NodeWeights(const std::vector<std::vector<Entry>> &rows);
+    /** @param starts  where the entries of each row begin, and the last ones
+     *                 end. */
+    NodeWeights(std::vector<unsigned int> &&starts,
+                std::vector<Entry>        &&entries);
 
-    /** The same weights with rows and columns exchanged. */
-    NodeWeights transposed(const unsigned int n_columns) const;
+    /** Rows and columns exchanged, of some of the rows.
+     * @param n_columns  will be the number of rows.
+     * @param rows       which rows, and the numbers that they will have. */
+    NodeWeights transposed(
+      const unsigned int                                        n_columns,
+      const std::vector<std::pair<unsigned int, unsigned int>> &rows) const;
 
     unsigned int
     n_rows() const
