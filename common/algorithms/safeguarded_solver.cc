@@ -1,5 +1,6 @@
 #include <common/algorithms/safeguarded_solver.h>
 #include <common/parallel/reductions.h>
+#include <common/parallel/run_clock.h>
 
 #include <algorithm>
 #include <cctype>
@@ -185,6 +186,7 @@ namespace Friction
                                 ContactState   &state,
                                 const Progress &progress)
   {
+    const RunScope part(problem.communicator(), RunPart::solution);
     if (!settings.safeguards)
       return CoulombSolver<dim>(iteration, CoulombSettings(settings))
         .solve(u, state, progress);

@@ -4,6 +4,7 @@
 #include <common/discretization/leaf_matrix.h>
 #include <common/discretization/node_numbering.h>
 #include <common/parallel/collective_error.h>
+#include <common/parallel/run_clock.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/timer.h>
@@ -59,11 +60,14 @@ namespace Friction
   void
   Discretization<dim>::set_up()
   {
-    Timer timer;
+    Timer          timer;
+    const RunScope part(Compatibility::mpi_communicator(mesh), RunPart::dofs);
     dofs.distribute_dofs(fe);
     dofs.distribute_mg_dofs();
     renumber_nodes(dofs);
     find_constraints();
+    const RunScope part_of_contact(Compatibility::mpi_communicator(mesh),
+                                   RunPart::contact);
     contact_boundary = std::make_unique<ContactBoundary<dim>>(
       the_mapping, dofs, hanging, *nodal_constraints, the_scene);
     const FrictionLaw law = the_scene.friction_law();
@@ -89,6 +93,9 @@ namespace Friction
     hanging                  = Compatibility::make_constraints(owned, relevant);
     DoFTools::make_hanging_node_constraints(dofs, hanging);
     hanging.close();
+
+    const RunScope part(Compatibility::mpi_communicator(mesh),
+                        RunPart::contact);
 
     // Prescribed displacements are collected by an object of the same class,
     // because interpolate_boundary_values() wants one; it is never used for
@@ -133,9 +140,15 @@ namespace Friction
     // relevant ones of step-40. But a row to which a hanging node has been
     // condensed reaches all cells around that node, and one of them may be
     // farther away.
-    make_stiffness_pattern(dofs, hanging, pattern);
+    IndexSet coupled;
+    {
+      const RunScope part_of_assembly(Compatibility::mpi_communicator(mesh),
+                                      RunPart::assembly);
+      make_stiffness_pattern(dofs, hanging, pattern);
+      coupled = coupled_dofs(dofs, pattern);
+    }
     nodal_constraints = std::make_unique<NodalConstraints<dim>>(
-      dofs, hanging, prescribed, coupled_dofs(dofs, pattern));
+      dofs, hanging, prescribed, coupled);
   }
 
 
@@ -144,7 +157,9 @@ namespace Friction
   void
   Discretization<dim>::assemble(const CellForm<dim> &bilinear_form)
   {
-    Timer                          timer;
+    Timer          timer;
+    const RunScope part(Compatibility::mpi_communicator(mesh),
+                        RunPart::assembly);
     TrilinosWrappers::SparseMatrix matrix;
     matrix.reinit(dofs.locally_owned_dofs(),
                   dofs.locally_owned_dofs(),

@@ -1,5 +1,6 @@
 #include <common/compatibility.h>
 #include <common/discretization/mesh_refinement.h>
+#include <common/parallel/run_clock.h>
 #include <common/scene/mesh_size.h>
 
 #include <algorithm>
@@ -36,6 +37,7 @@ namespace Friction
   {
     if (times == 0)
       return;
+    const RunScope part(Compatibility::mpi_communicator(mesh), RunPart::mesh);
     check_that_mesh_fits(dim,
                          mesh.n_global_active_cells() *
                            std::pow(2., dim * times),
@@ -52,6 +54,8 @@ namespace Friction
               Discretization<dim>                       &discretization,
               const std::vector<VectorType *>           &vectors)
   {
+    const MPI_Comm communicator = Compatibility::mpi_communicator(mesh);
+    const RunScope transfer_part(communicator, RunPart::transfer);
     Compatibility::SolutionTransfer<dim, VectorType> transfer(
       discretization.dof_handler());
     std::vector<double> lifts;
@@ -67,7 +71,6 @@ namespace Friction
           ++n_refined;
           deepest = std::max<unsigned int>(deepest, cell->level() + 1);
         }
-    const MPI_Comm communicator = Compatibility::mpi_communicator(mesh);
     check_that_mesh_fits(
       dim,
       mesh.n_global_active_cells() +
@@ -78,7 +81,10 @@ namespace Friction
 
     transfer.prepare_for_coarsening_and_refinement(
       std::vector<const VectorType *>(vectors.begin(), vectors.end()));
-    mesh.execute_coarsening_and_refinement();
+    {
+      const RunScope mesh_part(communicator, RunPart::mesh);
+      mesh.execute_coarsening_and_refinement();
+    }
     discretization.set_up();
     for (VectorType *v : vectors)
       *v = discretization.vector();

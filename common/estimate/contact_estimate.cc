@@ -1,4 +1,5 @@
 #include <common/estimate/contact_estimate.h>
+#include <common/parallel/run_clock.h>
 
 namespace Friction
 {
@@ -8,6 +9,8 @@ namespace Friction
                          const VectorType          &displacement,
                          const VectorType          &tractions)
   {
+    const RunScope        part(discretization.constraints().communicator(),
+                        RunPart::estimate);
     const Scene<dim>     &scene = discretization.scene();
     EstimatorProblem<dim> problem;
     problem.lambda               = scene.material().lambda();

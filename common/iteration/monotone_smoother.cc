@@ -1,6 +1,7 @@
 #include <common/contact/contact_forces.h>
 #include <common/iteration/monotone_smoother.h>
 #include <common/nodes/interface_damping.h>
+#include <common/parallel/run_clock.h>
 
 #include <algorithm>
 
@@ -12,6 +13,7 @@ namespace Friction
     : problem(problem)
     , inverses(problem.constraints.n_owned_nodes(), zero_block<dim>())
   {
+    const RunScope               part(problem.communicator(), RunPart::levels);
     const NodeBlockMatrix<dim>  &matrix      = problem.stiffness.blocks();
     const NodalConstraints<dim> &constraints = problem.constraints;
     const ContactBoundary<dim>  &contact     = problem.contact;

@@ -6,6 +6,19 @@ namespace Friction
   Levels<dim>::Levels(const DoFHandler<dim>      &dof_handler,
                       const DiscreteProblem<dim> &problem,
                       const CoarsestMethod        coarsest_method)
+    : Levels(RunScope(problem.communicator(), RunPart::levels),
+             dof_handler,
+             problem,
+             coarsest_method)
+  {}
+
+
+
+  template <int dim>
+  Levels<dim>::Levels(const RunScope &,
+                      const DoFHandler<dim>      &dof_handler,
+                      const DiscreteProblem<dim> &problem,
+                      const CoarsestMethod        coarsest_method)
     : problem(problem)
     , level_hierarchy(
         dof_handler, problem.constraints, problem.stiffness.blocks())

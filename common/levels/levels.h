@@ -8,6 +8,7 @@
 #include <common/levels/level_transfer.h>
 #include <common/nodes/gauss_seidel.h>
 #include <common/parallel/ghost_exchange.h>
+#include <common/parallel/run_clock.h>
 
 #include <vector>
 
@@ -112,6 +113,12 @@ namespace Friction
     std::size_t memory_consumption() const;
 
   private:
+    // The first argument counts the time.
+    Levels(const RunScope &,
+           const DoFHandler<dim>      &dof_handler,
+           const DiscreteProblem<dim> &problem,
+           const CoarsestMethod        coarsest_method);
+
     const DiscreteProblem<dim>   &problem;
     const LevelHierarchy<dim>     level_hierarchy;
     const LevelTransfer<dim>      level_transfer;

@@ -1,6 +1,7 @@
 #include <common/algorithms/safeguarded_solver.h>
 #include <common/contact/contact_forces.h>
 #include <common/output/level_records.h>
+#include <common/parallel/run_clock.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/numbers.h>
@@ -55,7 +56,8 @@ namespace Friction
     const DoFHandler<dim>       &dof_handler = discretization.dof_handler();
     const NodalConstraints<dim> &constraints = discretization.constraints();
     const ContactBoundary<dim>  &contact_boundary = discretization.contact();
-    LevelRecords<dim>            records;
+    const RunScope    part(constraints.communicator(), RunPart::records);
+    LevelRecords<dim> records;
 
     records.costs         = report.costs;
     records.matrix_memory = report.matrix_memory;

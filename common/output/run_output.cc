@@ -1,5 +1,6 @@
 #include <common/compatibility.h>
 #include <common/output/profile.h>
+#include <common/parallel/run_clock.h>
 #include <common/output/run_output.h>
 #include <common/output/warnings.h>
 #include <common/parallel/collective_error.h>
@@ -88,6 +89,7 @@ namespace Friction
                             const VectorType          &displacement,
                             const ContactState        &state)
   {
+    const RunScope part(communicator, RunPart::records);
     for (const std::string &warning :
          warnings_at_end(discretization, displacement, state))
       the_console.warning(warning);
@@ -119,8 +121,9 @@ namespace Friction
                             const VectorType          &displacement,
                             const Vector<float>       &cell_errors)
   {
-    const bool is_first = !any_level;
-    any_level           = true;
+    const RunScope part(communicator, RunPart::records);
+    const bool     is_first = !any_level;
+    any_level               = true;
     if (is_first && !restarted)
       remove_other_run();
     // Not that of another run, if this one writes none.
@@ -138,6 +141,8 @@ namespace Friction
     history.add_level(
       records.level, records.cycles, records.contact, records.outer);
     if (parameters.output.fields)
+      {
+      const RunScope part_of_fields(communicator, RunPart::fields);
       fields.write_level(records.level.level,
                          {discretization.mapping(),
                           discretization.dof_handler(),
@@ -145,6 +150,7 @@ namespace Friction
                           displacement,
                           cell_errors.size() > 0 ? &cell_errors : nullptr},
                          records.own_contact);
+      }
     if (parameters.output.verification)
       verification.write_level(
         records.level.level, discretization, displacement, records.own_contact);
@@ -323,6 +329,7 @@ namespace Friction
   {
     if (!parameters.output.checkpoint)
       return;
+    const RunScope part(communicator, RunPart::records);
 
     Header header;
     header.dimension                       = dim;

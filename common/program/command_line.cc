@@ -1,4 +1,5 @@
 #include <common/parallel/collective_error.h>
+#include <common/parallel/run_clock.h>
 #include <common/printable.h>
 #include <common/program/check_scene.h>
 #include <common/program/command_line.h>
@@ -9,7 +10,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
-
+#include <chrono>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -114,7 +115,10 @@ namespace Friction
     // Everything happens while MPI is running, messages included: they are out
     // before the first process ends with a status other than 0, upon which
     // mpirun may end the others.
+    const auto start_of_program = std::chrono::steady_clock::now();
     Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+    RunClock                         clock(start_of_program);
+    clock.attach(MPI_COMM_WORLD);
     const bool speaks = Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
 
     // An unexpected exception may be that of a single process. We do not know
@@ -190,7 +194,10 @@ namespace Friction
               check_scene<3>(parameters, std::cout, MPI_COMM_WORLD);
             return 0;
           }
-        return run(parameters, start) ? 0 : 1;
+        const bool solved = run(parameters, start);
+        if (speaks && parameters.output.profile && parameters.output.times)
+          std::cout << clock.describe() << std::endl;
+        return solved ? 0 : 1;
       }
     catch (const InputError &error)
       {

@@ -1,5 +1,6 @@
 #include <common/compatibility.h>
 #include <common/parallel/collective_error.h>
+#include <common/parallel/run_clock.h>
 #include <common/parameters/parse_function.h>
 #include <common/printable.h>
 #include <common/scene/geometries.h>
@@ -282,6 +283,9 @@ namespace Friction
   void
   Scene<dim>::make_coarse_mesh(Triangulation<dim> &triangulation) const
   {
+    const RunScope part(Compatibility::mpi_communicator(triangulation),
+                        RunPart::mesh);
+
     // The mesh is made in a triangulation that lives on one processor, since
     // vertices can be moved freely there, and is then copied. Each process
     // makes its own; a mesh file that one of them cannot read is an error of
