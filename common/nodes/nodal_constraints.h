@@ -43,7 +43,7 @@ namespace Friction
      * @param dirichlet  Dirichlet values only (lines without entries).
      * Both must know the locally relevant degrees of freedom.
      * @param coupled    degrees of freedom that owned rows of the stiffness
-     *                   matrix couple to, see coupled_dofs(). With one process
+     *                   matrix couple to, see LeafAssembler. With one process
      *                   it may be left out.
      *
      * Collective.

@@ -467,7 +467,8 @@ namespace Friction
        flag,
        "Whether the console shows for each level what the parts of the solver "
        "have cost: messages, bytes and reductions per cycle and process, and "
-       "seconds if 'Times' are wanted."},
+       "seconds if 'Times' are wanted; then also the parts of the whole run at "
+       "its end."},
       {"Output",
        "Verbosity",
        "cycles",

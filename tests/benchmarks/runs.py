@@ -1,0 +1,171 @@
+#!/usr/bin/env python3
+"""Whole runs: seconds, their parts, and memory, beside other programs.
+
+Usage: runs.py PROGRAM_2D PROGRAM_3D LINEAR SCENES_2D SCENES_3D
+               [--before PROGRAM_2D PROGRAM_3D] [--repeat N] [--quick]
+
+PROGRAM_*  the step programs;
+LINEAR     benchmark-linear_program, a plain program for linear elasticity in the
+           manner of step-40;
+SCENES_*   the folders of the scene files;
+--before   step programs to compare with, those of an older state; they may have
+           other entries, so that only scene files are given to them that they
+           know.
+
+Every program is a process of its own, on one processor core. Programs that are
+compared take turns, N times; what counts is the quickest run of each. Seconds are
+those from the start of the process to its end, memory is the largest that it had.
+"""
+
+import argparse
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+
+TABLE = re.compile(r"^ +(\d+) +\d+ +(\d+) +(\d+) +(\d+) +(\d+) +(\d+) ")
+PART = re.compile(r"^(\S.*?) +([\d.]+) +([\d.]+)%$", re.M)
+
+
+class Run:
+    """One run of a program: its seconds, peak memory and output."""
+
+    def __init__(self, command):
+        environment = dict(os.environ,
+                           OMPI_ALLOW_RUN_AS_ROOT="1",
+                           OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                           OMPI_MCA_ess_singleton_isolated="1",
+                           OMP_NUM_THREADS="1",
+                           DEAL_II_NUM_THREADS="1")
+        with tempfile.TemporaryFile("w+") as output:
+            begin = time.monotonic()
+            process = subprocess.Popen(command, stdout=output,
+                                       stderr=subprocess.STDOUT,
+                                       env=environment)
+            _, status, usage = os.wait4(process.pid, 0)
+            self.seconds = time.monotonic() - begin
+            process.returncode = os.waitstatus_to_exitcode(status)
+            self.bytes = usage.ru_maxrss * 1024
+            output.seek(0)
+            self.output = output.read()
+        if process.returncode != 0:
+            sys.exit("%s ends with %d:\n%s" % (" ".join(command),
+                                               process.returncode,
+                                               self.output))
+
+    def dofs(self):
+        rows = [m for m in map(TABLE.match, self.output.split("\n")) if m]
+        return int(rows[-1].group(2)) if rows else 0
+
+    def parts(self):
+        return {m.group(1): float(m.group(2))
+                for m in PART.finditer(self.output)}
+
+
+def best(commands, repeat):
+    """The quickest run of each command; they take turns."""
+    runs = [[] for _ in commands]
+    for _ in range(repeat):
+        for command, its in zip(commands, runs):
+            its.append(Run(command))
+    return [min(its, key=lambda run: run.seconds) for its in runs]
+
+
+def main():
+    parser = argparse.ArgumentParser(usage=__doc__)
+    parser.add_argument("programs", nargs=5)
+    parser.add_argument("--before", nargs=2)
+    parser.add_argument("--repeat", type=int, default=3)
+    parser.add_argument("--quick", action="store_true")
+    arguments = parser.parse_args()
+    program = dict(zip("23", arguments.programs[:2]))
+    linear = arguments.programs[2]
+    scenes = dict(zip("23", arguments.programs[3:]))
+    before = dict(zip("23", arguments.before)) if arguments.before else None
+    repeat = 1 if arguments.quick else arguments.repeat
+
+    # dimension, scene, entries; refinements from the coarse mesh for the linear
+    # program, or none.
+    uniform = ["Refinement/Strategy=uniform", "Refinement/Maximum dofs=10000000"]
+    cases = [
+        ("2", "hertz", uniform + ["Refinement/Levels=7"], None),
+        ("2", "block", uniform + ["Refinement/Levels=9",
+                                  "Refinement/Initial refinements=0"], 9),
+        ("3", "cylinder", ["Refinement/Maximum dofs=400000"], None),
+        ("3", "block", uniform + ["Refinement/Levels=4",
+                                  "Refinement/Initial refinements=1"], 5),
+        ("3", "block", uniform + ["Refinement/Levels=5",
+                                  "Refinement/Initial refinements=1"], 6)]
+    if arguments.quick:
+        cases = [
+            ("2", "block", uniform + ["Refinement/Levels=3",
+                                      "Refinement/Initial refinements=0"], 3),
+            ("3", "block", uniform + ["Refinement/Levels=1",
+                                      "Refinement/Initial refinements=1"], 2)]
+
+    parts_of = []
+    print("Whole runs with friction, default output, to the default tolerance; "
+          "the quickest of %d" % repeat)
+    print("%-9s %s  %9s %9s %9s  %s" %
+          ("scene", "", "dofs", "seconds", "B/dof", "" if not before else
+           "   before     B/dof     ratio"))
+    with tempfile.TemporaryDirectory() as directory:
+        def command(binary, dim, scene, entries):
+            return [binary, os.path.join(scenes[dim], scene + ".prm"),
+                    "Output/Directory=" + os.path.join(directory, "run"),
+                    "Output/Profile=true", "Output/Verbosity=levels", *entries]
+
+        for dim, scene, entries, _ in cases:
+            commands = [command(program[dim], dim, scene, entries)]
+            if before:
+                commands.append(command(before[dim], dim, scene, entries))
+            runs = best(commands, repeat)
+            dofs = runs[0].dofs()
+            row = "%-9s %sD %9d %9.2f %9.0f" % (
+                scene, dim, dofs, runs[0].seconds, runs[0].bytes / dofs)
+            if before:
+                row += "  %9.2f %9.0f %9.2f" % (
+                    runs[1].seconds, runs[1].bytes / dofs,
+                    runs[0].seconds / runs[1].seconds)
+            print(row, flush=True)
+            parts_of.append(("%s %sD" % (scene, dim),
+                             [run.parts() for run in runs]))
+
+        print("\nParts of these runs, seconds%s" %
+              (" (before, where that program tells)" if before else ""))
+        for name, runs in parts_of:
+            print(name)
+            for part, seconds in runs[0].items():
+                row = "  %-22s %8.2f %5.1f%%" % (
+                    part, seconds, 100 * seconds / runs[0]["all"])
+                if len(runs) > 1 and part in runs[1]:
+                    row += " %8.2f" % runs[1][part]
+                print(row)
+
+        print("\nThe same mesh, a plain linear program; neither output nor "
+              "estimates on either side")
+        print("%-9s %s  %9s %9s %9s  %9s %9s  %7s %7s" %
+              ("scene", "", "dofs", "friction", "B/dof", "linear", "B/dof",
+               "seconds", "memory"))
+        for dim, scene, entries, refinements in cases:
+            if refinements is None:
+                continue
+            friction, plain = best(
+                [command(program[dim], dim, scene,
+                         entries + ["Output/Fields=false",
+                                    "Refinement/Estimate error=false"]),
+                 [linear, dim, os.path.join(scenes[dim], scene + ".prm"),
+                  str(refinements)]], repeat)
+            dofs = friction.dofs()
+            if plain.output.split()[0] != str(dofs):
+                sys.exit("the meshes differ: %d and %s" % (dofs, plain.output))
+            print("%-9s %sD %9d %9.2f %9.0f  %9.2f %9.0f  %7.2f %7.2f" % (
+                scene, dim, dofs, friction.seconds, friction.bytes / dofs,
+                plain.seconds, plain.bytes / dofs,
+                friction.seconds / plain.seconds, friction.bytes / plain.bytes))
+            print("  linear: " + plain.output.strip(), flush=True)
+
+
+main()
