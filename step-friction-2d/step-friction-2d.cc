@@ -463,8 +463,9 @@ namespace StepFriction2d
         if (parameters.refinement.estimate_error || (adaptive && !last))
           estimate =
             estimate_contact_error(discretization, displacement, tractions);
-        stop.add_estimate(estimate.total,
-                          discretization.dof_handler().n_dofs());
+        stop.add_level(estimate.total,
+                       discretization.dof_handler().n_dofs(),
+                       report);
         record_level(level, estimate);
 
         // A level without a certified solution is the end: what is wrong on

@@ -19,6 +19,7 @@ namespace Friction
   {
     limits.inner_tolerance  = settings.inner_tolerance;
     limits.energy_tolerance = settings.energy_tolerance;
+    limits.expected_pace    = settings.expected_pace;
     limits.maximum_cycles   = settings.maximum_cycles;
   }
 

@@ -36,6 +36,7 @@ namespace Friction
       {
         result.energy_tolerance = caution * share * error *
           std::pow(double(n_dofs_then) / double(n_dofs), 1. / dim);
+        result.expected_pace = pace;
         // Forces at single nodes are known less well than the energy; an error
         // of a percent is not what the mesh is to be blamed for, more is.
         result.certificate_tolerance =
@@ -53,6 +54,22 @@ namespace Friction
   {
     error       = estimated_error / overestimation;
     n_dofs_then = n_dofs;
+  }
+
+
+
+  // The first mesh begins with nothing, which says little about those that
+  // begin with what a coarser one has found.
+  template <int dim>
+  void
+  DiscretizationStop<dim>::add_level(
+    const double                          estimated_error,
+    const dealii::types::global_dof_index n_dofs,
+    const SolverReport                   &report)
+  {
+    if (error > 0 && report.cycles.size() > 1 && report.cycles[0].increment > 0)
+      pace = report.cycles[1].increment / report.cycles[0].increment;
+    add_estimate(estimated_error, n_dofs);
   }
 
 

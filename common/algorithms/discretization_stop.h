@@ -1,6 +1,7 @@
 #ifndef friction_algorithms_discretization_stop_h
 #define friction_algorithms_discretization_stop_h
 
+#include <common/algorithms/solver_report.h>
 #include <common/parameters/solver_settings.h>
 
 #include <deal.II/base/types.h>
@@ -18,6 +19,10 @@ namespace Friction
    * not known before the mesh has been solved. So that of the mesh before is
    * taken, scaled by the rate at which errors fall with the number of unknowns,
    * $N^{-1/d}$, and halved, since the first meshes may do better than that.
+   *
+   * Two increments say how large the error of the iteration is. If the mesh
+   * before has had two, their ratio is what is expected of the next one, too,
+   * and one cycle may be enough there.
    */
   template <int dim>
   class DiscretizationStop
@@ -35,10 +40,16 @@ namespace Friction
     void add_estimate(const double                          estimated_error,
                       const dealii::types::global_dof_index n_dofs);
 
+    /** The same, and how its solution went. */
+    void add_level(const double                          estimated_error,
+                   const dealii::types::global_dof_index n_dofs,
+                   const SolverReport                   &report);
+
   private:
     const SolverSettings            settings;
     double                          error = 0; // energy norm; unknown if zero
     dealii::types::global_dof_index n_dofs_then = 0;
+    double                          pace        = 0; // unknown if zero
   };
 } // namespace Friction
 

@@ -12,16 +12,18 @@ namespace Friction
   {
     // The increments that are still to come, if they go on as the last two:
     // each iterate differs from the one before by an increment, and from the
-    // solution by all that follow. The pace is not believed to be better than a
-    // tenth per cycle, nor, so that the sum is finite, slower than 0.98.
+    // solution by all that follow. A single increment goes on as expected, or
+    // else by halves. The pace is not believed to be better than a tenth per
+    // cycle, nor, so that the sum is finite, slower than 0.98.
     double
-    extrapolated_error(const std::vector<CycleInfo> &cycles)
+    extrapolated_error(const std::vector<CycleInfo> &cycles,
+                       const double                  expected_pace)
     {
       const double last = cycles.back().increment;
-      if (cycles.size() < 2 || !(cycles[cycles.size() - 2].increment > 0))
-        return last;
-      const double pace =
-        std::max(.1, std::min(.98, last / cycles[cycles.size() - 2].increment));
+      double       pace = expected_pace > 0 ? expected_pace : .5;
+      if (cycles.size() > 1 && cycles[cycles.size() - 2].increment > 0)
+        pace = last / cycles[cycles.size() - 2].increment;
+      pace = std::max(.1, std::min(.98, pace));
       return last * pace / (1 - pace);
     }
 
@@ -167,10 +169,12 @@ namespace Friction
           limits.budget->take_cycle();
         if (!std::isfinite(last.increment))
           break;
-        result.algebraic_error = size * extrapolated_error(result.cycles);
+        result.algebraic_error =
+          size * extrapolated_error(result.cycles, limits.expected_pace);
         if (last.increment <= limits.inner_tolerance ||
             is_rounding(result.cycles) ||
-            (cycle > 1 && result.algebraic_error <= limits.energy_tolerance))
+            ((cycle > 1 || limits.expected_pace > 0) &&
+             result.algebraic_error <= limits.energy_tolerance))
           {
             result.converged = true;
             break;

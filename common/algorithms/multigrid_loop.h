@@ -80,6 +80,10 @@ namespace Friction
     /// small enough; zero if this is not to be asked.
     double energy_tolerance = 0.;
 
+    /// With this ratio of increments the first one says how large the error is;
+    /// zero: it does not, and there are two cycles at least.
+    double expected_pace = 0.;
+
     unsigned int maximum_cycles = 200;
 
     /// End early if the iteration would not arrive within that many cycles;

@@ -176,7 +176,9 @@ namespace Friction
   bool
   NestedIteration<dim>::mark(const ErrorEstimate &estimate)
   {
-    add_estimate(estimate.total, the_discretization.dof_handler().n_dofs());
+    stop.add_level(estimate.total,
+                   the_discretization.dof_handler().n_dofs(),
+                   last_report);
     if (the_parameters.refinement.strategy == RefinementStrategy::uniform)
       {
         mark_all();

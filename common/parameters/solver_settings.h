@@ -94,6 +94,11 @@ namespace Friction
     bool   stop_at_discretization = false;
     double energy_tolerance       = 0.;
 
+    /// By what factor the second increment is expected to be smaller than the
+    /// first, for an error at which to stop; zero: nothing is known, and only
+    /// two increments say how large the error is.
+    double expected_pace = 0.;
+
     /// Relative change of the normal forces at which Algorithm 2 stops.
     double outer_tolerance = 2e-7;
 
