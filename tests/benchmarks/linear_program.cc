@@ -43,6 +43,7 @@
 #include <deal.II/numerics/vector_tools.h>
 
 #include <Teuchos_ParameterList.hpp>
+#include <ml_MultiLevelPreconditioner.h>
 
 #include <cstdio>
 #include <iostream>
