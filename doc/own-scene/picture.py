@@ -115,7 +115,7 @@ def show_contact(body, contact, view):
     arrows = pv.Glyph(Input=warped(contact, 1), GlyphType="Arrow",
                       OrientationArray=["POINTS", "traction"],
                       ScaleArray=["POINTS", "traction"], ScaleFactor=ARROW,
-                      GlyphMode="Every Nth Point", Stride=6)
+                      GlyphMode="Every Nth Point", Stride=3)
     arrows.GlyphType.TipRadius = 0.06
     arrows.GlyphType.TipLength = 0.2
     arrows.GlyphType.ShaftRadius = 0.022
