@@ -7,9 +7,10 @@
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/symmetric_tensor.h>
 
-#include <deal.II/fe/fe_values.h>
-
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 namespace Friction
 {
@@ -17,13 +18,219 @@ namespace Friction
 
   namespace
   {
+    // Which side of the unit cell a corner is on, in one direction: 0 or 1.
+    unsigned int
+    side_of_corner(const unsigned int corner, const unsigned int direction)
+    {
+      return (corner >> direction) & 1U;
+    }
+
+
+
+    // The hat functions of the corners of the unit interval, square or cube.
+    template <int dim>
+    std::array<double, GeometryInfo<dim>::vertices_per_cell>
+    hat_values(const Point<dim> &p)
+    {
+      std::array<double, GeometryInfo<dim>::vertices_per_cell> values;
+      for (unsigned int v = 0; v < values.size(); ++v)
+        {
+          values[v] = 1.;
+          for (unsigned int d = 0; d < dim; ++d)
+            values[v] *= side_of_corner(v, d) == 1 ? p[d] : 1. - p[d];
+        }
+      return values;
+    }
+
+
+
+    // Their derivatives in one direction.
+    template <int dim>
+    std::array<double, GeometryInfo<dim>::vertices_per_cell>
+    hat_derivatives(const Point<dim> &p, const unsigned int direction)
+    {
+      std::array<double, GeometryInfo<dim>::vertices_per_cell> derivatives;
+      for (unsigned int v = 0; v < derivatives.size(); ++v)
+        {
+          derivatives[v] = side_of_corner(v, direction) == 1 ? 1. : -1.;
+          for (unsigned int d = 0; d < dim; ++d)
+            if (d != direction)
+              derivatives[v] *= side_of_corner(v, d) == 1 ? p[d] : 1. - p[d];
+        }
+      return derivatives;
+    }
+
+
+
+    // The other coordinates.
+    template <int dim>
+    Point<dim - 1>
+    without(const Point<dim> &p, const unsigned int direction)
+    {
+      Point<dim - 1> rest;
+      for (unsigned int d = 0, e = 0; d < dim; ++d)
+        if (d != direction)
+          rest[e++] = p[d];
+      return rest;
+    }
+
+
+
+    // A cell and the displacement in it.
+    template <int dim>
+    struct CellValues
+    {
+      static constexpr unsigned int n_corners =
+        GeometryInfo<dim>::vertices_per_cell;
+      static constexpr unsigned int n_edges = n_corners / 2;
+
+      // Coordinates of a place and, behind them, a displacement.
+      using Values = std::array<double, 2 * dim>;
+
+      explicit CellValues(const std::array<Values, n_corners> &corners)
+        : corners(corners)
+      {
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int v = 0, e = 0; v < n_corners; ++v)
+            if (side_of_corner(v, d) == 0)
+              {
+                for (unsigned int c = 0; c < 2 * dim; ++c)
+                  edges[d][e][c] = corners[v + (1U << d)][c] - corners[v][c];
+                ++e;
+              }
+      }
+
+      Point<dim>
+      place(const unsigned int corner) const
+      {
+        Point<dim> result;
+        for (unsigned int d = 0; d < dim; ++d)
+          result[d] = corners[corner][d];
+        return result;
+      }
+
+      // In deal.II's order.
+      std::array<Values, n_corners> corners;
+
+      // By how much they differ between the ends of the edges in each direction
+      // of the unit cell; these have the order of the corners they begin in.
+      std::array<std::array<Values, n_edges>, dim> edges;
+    };
+
+
+
+    // At a point of a cell: how the mesh maps the unit cell there, and the
+    // gradient of the displacement.
+    //
+    // What is trilinear has in each unit coordinate a derivative that is
+    // bilinear in the others, with the differences along the edges as values in
+    // the corners.
+    template <int dim>
+    struct PointOfCell
+    {
+      PointOfCell(const CellValues<dim> &cell, const Point<dim> &p)
+      {
+        std::array<Tensor<1, dim>, dim> tangents, derivatives;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            typename CellValues<dim>::Values sum{};
+            const auto                       hats = hat_values(without(p, d));
+            for (unsigned int e = 0; e < CellValues<dim>::n_edges; ++e)
+              for (unsigned int c = 0; c < 2 * dim; ++c)
+                sum[c] += hats[e] * cell.edges[d][e][c];
+            for (unsigned int c = 0; c < dim; ++c)
+              {
+                tangents[d][c]    = sum[c];
+                derivatives[d][c] = sum[dim + c];
+              }
+          }
+
+        if constexpr (dim == 2)
+          {
+            unit_gradients[0] = cross_product_2d(tangents[1]);
+            unit_gradients[1] = -cross_product_2d(tangents[0]);
+          }
+        else
+          for (unsigned int d = 0; d < dim; ++d)
+            unit_gradients[d] = cross_product_3d(tangents[(d + 1) % dim],
+                                                 tangents[(d + 2) % dim]);
+        determinant = unit_gradients[0] * tangents[0];
+        const double scale = 1. / determinant;
+        for (unsigned int d = 0; d < dim; ++d)
+          unit_gradients[d] *= scale;
+
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            for (unsigned int d = 0; d < dim; ++d)
+              gradient[i][j] += derivatives[d][i] * unit_gradients[d][j];
+      }
+
+      double determinant;
+
+      // Of the unit coordinates.
+      std::array<Tensor<1, dim>, dim> unit_gradients;
+
+      Tensor<2, dim> gradient;
+    };
+
+
+
+    // The corners of a face of a cell, in the order of deal.II's standard
+    // orientation.
+    template <int dim>
+    std::array<unsigned int, GeometryInfo<dim>::vertices_per_face>
+    corners_of_face(const unsigned int f)
+    {
+      std::array<unsigned int, GeometryInfo<dim>::vertices_per_face> corners;
+      for (unsigned int v = 0, k = 0; v < GeometryInfo<dim>::vertices_per_cell;
+           ++v)
+        if (side_of_corner(v, f / 2) == f % 2)
+          corners[k++] = v;
+      return corners;
+    }
+
+
+
+    // A point of a face of the unit cell.
+    template <int dim>
+    Point<dim>
+    point_of_face(const unsigned int f, const Point<dim - 1> &place)
+    {
+      Point<dim> p;
+      for (unsigned int d = 0, e = 0; d < dim; ++d)
+        p[d] = d == f / 2 ? f % 2 : place[e++];
+      return p;
+    }
+
+
+
+    // What a function that is linear in each coordinate has at a point, by the
+    // values there of the hat functions of the corners.
+    template <typename T, std::size_t n>
+    T
+    interpolate(const std::array<double, n> &hats,
+                const std::array<T, n>      &values)
+    {
+      T sum = hats[0] * values[0];
+      for (unsigned int k = 1; k < n; ++k)
+        sum += hats[k] * values[k];
+      return sum;
+    }
+
+
+
+    // The residuals of Q1 elements need first and second derivatives of the
+    // displacement, on both sides of each face. They follow from the values in
+    // the cell's corners by some dozens of products. FEValues would compute
+    // them through all shape functions of the FESystem, and tables of their
+    // derivatives for each cell and face before, which takes several times as
+    // long.
     template <int dim>
     class Estimator
     {
     public:
       using VectorType   = LinearAlgebra::distributed::Vector<double>;
       using CellIterator = typename DoFHandler<dim>::active_cell_iterator;
-      using FaceIterator = typename DoFHandler<dim>::face_iterator;
 
       Estimator(const Mapping<dim>          &mapping,
                 const DoFHandler<dim>       &dof_handler,
@@ -34,27 +241,47 @@ namespace Friction
       ErrorEstimate run();
 
     private:
-      void add_cell(const CellIterator &cell);
+      static constexpr unsigned int n_face_corners =
+        GeometryInfo<dim>::vertices_per_face;
 
-      void add_interior_face(const CellIterator &cell, const unsigned int f);
+      // One place or number for each corner of a face.
+      template <typename T>
+      using OnFace = std::array<T, n_face_corners>;
 
-      void add_jump(const CellIterator          &cell,
-                    const CellIterator          &neighbor,
-                    const FEFaceValuesBase<dim> &values,
-                    const FEFaceValuesBase<dim> &neighbor_values,
-                    const double                 diameter);
+      void gather_displacements();
 
-      void add_boundary_face(const CellIterator &cell, const unsigned int f);
+      CellValues<dim> values_of(const CellIterator &cell) const;
 
-      void add_complementarity(const CellIterator &cell,
-                               const FaceIterator &face);
+      void add_cell(const CellIterator &cell, const CellValues<dim> &values);
+
+      void add_interior_face(const CellIterator    &cell,
+                             const CellValues<dim> &values,
+                             const unsigned int     f);
+
+      void add_jump(const CellIterator    &cell,
+                    const CellValues<dim> &values,
+                    const unsigned int     f,
+                    const CellIterator    &neighbor,
+                    const CellValues<dim> &neighbor_values);
+
+      OnFace<Point<dim>> face_in_neighbor(const CellIterator &cell,
+                                          const unsigned int  f,
+                                          const CellIterator &neighbor) const;
+
+      void add_boundary_face(const CellIterator    &cell,
+                             const CellValues<dim> &values,
+                             const unsigned int     f);
+
+      void add_complementarity(const CellIterator                       &cell,
+                               const unsigned int                        f,
+                               const std::array<double, n_face_corners> &JxW);
 
       // Book a contribution both where and why it arises.
       void add(const CellIterator &cell, const double value, double &share);
 
       double square_of_rounding(const CellIterator &cell) const;
 
-      Tensor<1, dim> stress_times_normal(const SymmetricTensor<2, dim> &strain,
+      Tensor<1, dim> stress_times_normal(const Tensor<2, dim> &gradient,
                                          const double volumetric_strain,
                                          const Tensor<1, dim> &normal) const;
 
@@ -68,21 +295,19 @@ namespace Friction
       // Turns squared stresses into energies.
       const double scaling;
 
-      const FEValuesExtractors::Vector displacements;
+      // Two points per direction integrate the residuals of Q1 elements exactly
+      // on parallelograms, and data with an error that is of higher order.
+      // There are as many as corners.
+      const QGauss<dim>     quadrature;
+      const QGauss<dim - 1> face_quadrature;
 
-      FEValues<dim>        fe_values;
-      FEFaceValues<dim>    face_values;
-      FEFaceValues<dim>    neighbor_face_values;
-      FESubfaceValues<dim> subface_values;
+      // By vertex of the mesh.
+      const std::vector<Point<dim>> &vertices;
+      std::vector<Tensor<1, dim>>    displacements;
 
       // Scratch.
-      std::vector<Tensor<3, dim>>          hessians;
-      std::vector<SymmetricTensor<2, dim>> cell_strains;
-      std::vector<SymmetricTensor<2, dim>> strains;
-      std::vector<SymmetricTensor<2, dim>> neighbor_strains;
-      std::vector<Tensor<1, dim>>          nodal_tractions;
-      std::vector<Vector<double>>          body_forces;
-      std::vector<Vector<double>>          tractions;
+      std::vector<Vector<double>> body_forces;
+      std::vector<Vector<double>> tractions;
 
       Vector<double> squared_errors;
       ErrorEstimate  estimate;
@@ -91,8 +316,6 @@ namespace Friction
 
 
 
-    // Two points per direction integrate the residuals of Q1 elements exactly
-    // on parallelograms, and data with an error that is of higher order.
     template <int dim>
     Estimator<dim>::Estimator(const Mapping<dim>          &mapping,
                               const DoFHandler<dim>       &dof_handler,
@@ -106,34 +329,60 @@ namespace Friction
       , volumetric_strain(
           mapping, dof_handler, problem.volumetric_strain, displacement)
       , scaling(1. / (2. * problem.mu))
-      , displacements(0)
-      , fe_values(mapping,
-                  dof_handler.get_fe(),
-                  QGauss<dim>(dof_handler.get_fe().degree + 1),
-                  update_gradients | update_hessians |
-                    update_quadrature_points | update_JxW_values)
-      , face_values(mapping,
-                    dof_handler.get_fe(),
-                    QGauss<dim - 1>(dof_handler.get_fe().degree + 1),
-                    update_values | update_gradients | update_normal_vectors |
-                      update_quadrature_points | update_JxW_values)
-      , neighbor_face_values(mapping,
-                             dof_handler.get_fe(),
-                             QGauss<dim - 1>(dof_handler.get_fe().degree + 1),
-                             update_gradients)
-      , subface_values(mapping,
-                       dof_handler.get_fe(),
-                       QGauss<dim - 1>(dof_handler.get_fe().degree + 1),
-                       update_gradients)
-      , hessians(fe_values.n_quadrature_points)
-      , cell_strains(fe_values.n_quadrature_points)
-      , strains(face_values.n_quadrature_points)
-      , neighbor_strains(face_values.n_quadrature_points)
-      , nodal_tractions(face_values.n_quadrature_points)
-      , body_forces(fe_values.n_quadrature_points, Vector<double>(dim))
-      , tractions(face_values.n_quadrature_points, Vector<double>(dim))
+      , quadrature(2)
+      , face_quadrature(2)
+      , vertices(dof_handler.get_triangulation().get_vertices())
+      , displacements(vertices.size())
+      , body_forces(quadrature.size(), Vector<double>(dim))
+      , tractions(face_quadrature.size(), Vector<double>(dim))
       , squared_errors(dof_handler.get_triangulation().n_active_cells())
-    {}
+    {
+      Assert(dof_handler.get_fe().degree == 1, ExcNotImplemented());
+      gather_displacements();
+    }
+
+
+
+    // A vertex has several cells, which are asked for it several times; so look
+    // its degrees of freedom up once.
+    template <int dim>
+    void
+    Estimator<dim>::gather_displacements()
+    {
+      std::vector<bool> known(displacements.size());
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (!cell->is_artificial())
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              const unsigned int vertex = cell->vertex_index(v);
+              if (!known[vertex])
+                for (unsigned int c = 0; c < dim; ++c)
+                  displacements[vertex][c] =
+                    displacement(cell->vertex_dof_index(v, c));
+              known[vertex] = true;
+            }
+    }
+
+
+
+    template <int dim>
+    CellValues<dim>
+    Estimator<dim>::values_of(const CellIterator &cell) const
+    {
+      std::array<typename CellValues<dim>::Values, CellValues<dim>::n_corners>
+        corners;
+      for (const unsigned int v : cell->vertex_indices())
+        {
+          const unsigned int vertex = cell->vertex_index(v);
+          const Point<dim>  &place  = vertices[vertex];
+          for (unsigned int c = 0; c < dim; ++c)
+            {
+              corners[v][c]       = place[c];
+              corners[v][dim + c] = displacements[vertex][c];
+            }
+        }
+      return CellValues<dim>(corners);
+    }
 
 
 
@@ -148,12 +397,13 @@ namespace Friction
         for (const auto &cell : dof_handler.active_cell_iterators())
           if (cell->is_locally_owned())
             {
-              add_cell(cell);
+              const CellValues<dim> values = values_of(cell);
+              add_cell(cell, values);
               for (const unsigned int f : cell->face_indices())
                 if (cell->face(f)->at_boundary())
-                  add_boundary_face(cell, f);
+                  add_boundary_face(cell, values, f);
                 else
-                  add_interior_face(cell, f);
+                  add_interior_face(cell, values, f);
             }
       });
 
@@ -193,7 +443,7 @@ namespace Friction
       double u = 0.;
       for (const unsigned int v : cell->vertex_indices())
         for (unsigned int c = 0; c < dim; ++c)
-          u = std::max(u, std::abs(displacement(cell->vertex_dof_index(v, c))));
+          u = std::max(u, std::abs(displacements[cell->vertex_index(v)][c]));
       return 1e-18 * 2. * problem.mu * u * u *
         std::pow(cell->diameter(), dim - 2);
     }
@@ -214,11 +464,11 @@ namespace Friction
 
     template <int dim>
     Tensor<1, dim>
-    Estimator<dim>::stress_times_normal(const SymmetricTensor<2, dim> &strain,
+    Estimator<dim>::stress_times_normal(const Tensor<2, dim> &gradient,
                                         const double          volumetric_strain,
                                         const Tensor<1, dim> &normal) const
     {
-      return 2. * problem.mu * (strain * normal) +
+      return problem.mu * (gradient * normal + normal * gradient) +
         problem.lambda * volumetric_strain * normal;
     }
 
@@ -228,44 +478,77 @@ namespace Friction
     // u+(\lambda+\mu)\nabla\operatorname{div}u$. Bilinear functions have mixed
     // second derivatives, so this is not zero. The pressure has a gradient in
     // a cell only if it is that of a pointwise volumetric strain.
+    //
+    // With unit coordinates $\xi_a$ and $u_{,ab}$ the derivatives with respect
+    // to them the second derivatives of u are the sums over a and b of
+    // $(u_{,ab}-\nabla u\,x_{,ab})\otimes\nabla\xi_a\otimes\nabla\xi_b$.
     template <int dim>
     void
-    Estimator<dim>::add_cell(const CellIterator &cell)
+    Estimator<dim>::add_cell(const CellIterator    &cell,
+                             const CellValues<dim> &values)
     {
       const double of_gradient = volumetric_strain.is_pointwise()
         ? problem.lambda + problem.mu
         : problem.mu;
 
-      fe_values.reinit(cell);
-      fe_values[displacements].get_function_hessians(displacement, hessians);
-      fe_values[displacements].get_function_symmetric_gradients(displacement,
-                                                                cell_strains);
       if (problem.body_force != nullptr)
-        problem.body_force->vector_value_list(fe_values.get_quadrature_points(),
-                                              body_forces);
+        {
+          std::vector<Point<dim>> places(quadrature.size());
+          for (unsigned int q = 0; q < quadrature.size(); ++q)
+            {
+              const auto hats = hat_values(quadrature.point(q));
+              for (unsigned int v = 0; v < CellValues<dim>::n_corners; ++v)
+                places[q] += hats[v] * values.place(v);
+            }
+          problem.body_force->vector_value_list(places, body_forces);
+        }
 
       double squared_residual = 0., squared_difference = 0.;
-      for (const unsigned int q : fe_values.quadrature_point_indices())
+      for (unsigned int q = 0; q < quadrature.size(); ++q)
         {
-          Tensor<1, dim> residual;
-          for (unsigned int i = 0; i < dim; ++i)
-            {
-              // Stays zero if there is no body force.
-              residual[i] = body_forces[q](i);
-              for (unsigned int j = 0; j < dim; ++j)
-                residual[i] += problem.mu * hessians[q][i][j][j] +
-                  of_gradient * hessians[q][j][j][i];
-            }
-          squared_residual += residual.norm_square() * fe_values.JxW(q);
+          const Point<dim>      &p = quadrature.point(q);
+          const PointOfCell<dim> point(values, p);
+          const double           JxW = point.determinant * quadrature.weight(q);
 
-          const double divergence = trace(cell_strains[q]);
-          const double theta      = volumetric_strain.value(cell, divergence);
+          Tensor<1, dim> residual;
+          // Stays zero if there is no body force.
+          for (unsigned int i = 0; i < dim; ++i)
+            residual[i] = body_forces[q](i);
+          for (unsigned int a = 0; a < dim; ++a)
+            for (unsigned int b = a + 1; b < dim; ++b)
+              {
+                // The differences along edges in direction a, differentiated.
+                typename CellValues<dim>::Values mixed{};
+                const auto signs = hat_derivatives(without(p, a), b - 1);
+                for (unsigned int e = 0; e < CellValues<dim>::n_edges; ++e)
+                  for (unsigned int c = 0; c < 2 * dim; ++c)
+                    mixed[c] += signs[e] * values.edges[a][e][c];
+
+                Tensor<1, dim> second;
+                for (unsigned int i = 0; i < dim; ++i)
+                  {
+                    second[i] = mixed[dim + i];
+                    for (unsigned int j = 0; j < dim; ++j)
+                      second[i] -= point.gradient[i][j] * mixed[j];
+                  }
+
+                // Once in the order a, b and once in the order b, a.
+                const Tensor<1, dim> &grad_a = point.unit_gradients[a];
+                const Tensor<1, dim> &grad_b = point.unit_gradients[b];
+                residual += 2. * problem.mu * (grad_a * grad_b) * second +
+                  of_gradient *
+                    ((second * grad_b) * grad_a + (second * grad_a) * grad_b);
+              }
+          squared_residual += residual.norm_square() * JxW;
+
+          const SymmetricTensor<2, dim> strain     = symmetrize(point.gradient);
+          const double                  divergence = trace(strain);
+          const double theta = volumetric_strain.value(cell, divergence);
           squared_difference +=
-            (divergence - theta) * (divergence - theta) * fe_values.JxW(q);
-          energy +=
-            (2. * problem.mu * cell_strains[q].norm() * cell_strains[q].norm() +
-             problem.lambda * theta * theta) *
-            fe_values.JxW(q);
+            (divergence - theta) * (divergence - theta) * JxW;
+          energy += (2. * problem.mu * (strain * strain) +
+                     problem.lambda * theta * theta) *
+            JxW;
         }
 
       add(cell,
@@ -283,8 +566,9 @@ namespace Friction
     // nothing for us, so then it is always ours.
     template <int dim>
     void
-    Estimator<dim>::add_interior_face(const CellIterator &cell,
-                                      const unsigned int  f)
+    Estimator<dim>::add_interior_face(const CellIterator    &cell,
+                                      const CellValues<dim> &values,
+                                      const unsigned int     f)
     {
       if (cell->face(f)->has_children())
         {
@@ -294,71 +578,105 @@ namespace Friction
             {
               const CellIterator child =
                 cell->neighbor_child_on_subface(f, subface);
-              if (child->is_locally_owned())
-                continue;
-              face_values.reinit(child, cell->neighbor_face_no(f));
-              subface_values.reinit(cell, f, subface);
-              add_jump(child,
-                       cell,
-                       face_values,
-                       subface_values,
-                       child->face(cell->neighbor_face_no(f))->diameter());
+              if (!child->is_locally_owned())
+                add_jump(child,
+                         values_of(child),
+                         cell->neighbor_face_no(f),
+                         cell,
+                         values);
             }
           return;
         }
 
       const CellIterator neighbor = cell->neighbor(f);
-      if (cell->neighbor_is_coarser(f))
+      if (neighbor->level() < cell->level() || !neighbor->is_locally_owned() ||
+          cell->active_cell_index() < neighbor->active_cell_index())
+        add_jump(cell, values, f, neighbor, values_of(neighbor));
+    }
+
+
+
+    // The corners of a face of a cell in the unit coordinates of its neighbor,
+    // which may be as large as the cell or larger. It depends on their
+    // orientations which corner is which, so compare the vertices: those of the
+    // neighbor with those of the cell, or of its parent.
+    template <int dim>
+    auto
+    Estimator<dim>::face_in_neighbor(const CellIterator &cell,
+                                     const unsigned int  f,
+                                     const CellIterator &neighbor) const
+      -> OnFace<Point<dim>>
+    {
+      const auto of_face = corners_of_face<dim>(f);
+
+      // For each corner of the face on that level, that of the neighbor.
+      const auto corners_in_neighbor = [&](const auto &cell_of_level) {
+        OnFace<Point<dim>> corners;
+        for (unsigned int k = 0; k < n_face_corners; ++k)
+          for (const unsigned int v : neighbor->vertex_indices())
+            if (neighbor->vertex_index(v) ==
+                cell_of_level->vertex_index(of_face[k]))
+              for (unsigned int d = 0; d < dim; ++d)
+                corners[k][d] = side_of_corner(v, d);
+        return corners;
+      };
+      if (neighbor->level() == cell->level())
+        return corners_in_neighbor(cell);
+
+      const auto         parent  = cell->parent();
+      OnFace<Point<dim>> corners = corners_in_neighbor(parent);
+
+      unsigned int child = 0;
+      while (parent->child_index(child) != cell->index())
+        ++child;
+      OnFace<Point<dim>> result;
+      for (unsigned int k = 0; k < n_face_corners; ++k)
         {
-          const auto coarse = cell->neighbor_of_coarser_neighbor(f);
-          face_values.reinit(cell, f);
-          subface_values.reinit(neighbor, coarse.first, coarse.second);
-          add_jump(cell,
-                   neighbor,
-                   face_values,
-                   subface_values,
-                   cell->face(f)->diameter());
+          // Within the face of the parent.
+          Point<dim - 1> place;
+          for (unsigned int d = 0, e = 0; d < dim; ++d)
+            if (d != f / 2)
+              place[e++] = 0.5 *
+                (side_of_corner(child, d) + side_of_corner(of_face[k], d));
+          result[k] = interpolate(hat_values(place), corners);
         }
-      else if (!neighbor->is_locally_owned() ||
-               cell->active_cell_index() < neighbor->active_cell_index())
-        {
-          face_values.reinit(cell, f);
-          neighbor_face_values.reinit(neighbor, cell->neighbor_face_no(f));
-          add_jump(cell,
-                   neighbor,
-                   face_values,
-                   neighbor_face_values,
-                   cell->face(f)->diameter());
-        }
+      return result;
     }
 
 
 
     template <int dim>
     void
-    Estimator<dim>::add_jump(const CellIterator          &cell,
-                             const CellIterator          &neighbor,
-                             const FEFaceValuesBase<dim> &values,
-                             const FEFaceValuesBase<dim> &neighbor_values,
-                             const double                 diameter)
+    Estimator<dim>::add_jump(const CellIterator    &cell,
+                             const CellValues<dim> &values,
+                             const unsigned int     f,
+                             const CellIterator    &neighbor,
+                             const CellValues<dim> &neighbor_values)
     {
-      values[displacements].get_function_symmetric_gradients(displacement,
-                                                             strains);
-      neighbor_values[displacements].get_function_symmetric_gradients(
-        displacement, neighbor_strains);
+      const OnFace<Point<dim>> there = face_in_neighbor(cell, f, neighbor);
 
       double squared_jump = 0.;
-      for (const unsigned int q : values.quadrature_point_indices())
+      for (unsigned int q = 0; q < face_quadrature.size(); ++q)
         {
-          const SymmetricTensor<2, dim> jump = strains[q] - neighbor_strains[q];
+          const Point<dim - 1>  &place = face_quadrature.point(q);
+          const PointOfCell<dim> point(values, point_of_face<dim>(f, place));
+          const PointOfCell<dim> neighbor_point(
+            neighbor_values, interpolate(hat_values(place), there));
+
+          // Normal to the face is the gradient of a unit coordinate.
+          const Tensor<1, dim> &conormal = point.unit_gradients[f / 2];
+          const double          length   = conormal.norm();
+
+          const Tensor<2, dim> jump = point.gradient - neighbor_point.gradient;
           squared_jump += stress_times_normal(
                             jump,
                             volumetric_strain.jump(cell, neighbor, trace(jump)),
-                            values.normal_vector(q))
+                            conormal / length)
                             .norm_square() *
-            values.JxW(q);
+            length * point.determinant * face_quadrature.weight(q);
         }
 
+      const double diameter = cell->face(f)->diameter();
       for (const CellIterator &side : {cell, neighbor})
         if (side->is_locally_owned())
           add(side, 0.5 * scaling * diameter * squared_jump, estimate.jumps);
@@ -368,11 +686,11 @@ namespace Friction
 
     template <int dim>
     void
-    Estimator<dim>::add_boundary_face(const CellIterator &cell,
-                                      const unsigned int  f)
+    Estimator<dim>::add_boundary_face(const CellIterator    &cell,
+                                      const CellValues<dim> &values,
+                                      const unsigned int     f)
     {
-      const FaceIterator       face = cell->face(f);
-      const types::boundary_id id   = face->boundary_id();
+      const types::boundary_id id = cell->face(f)->boundary_id();
 
       // Where the displacement is prescribed, the traction is what it is.
       const auto          fixed = problem.dirichlet.find(id);
@@ -382,48 +700,63 @@ namespace Friction
       if (mask.n_selected_components(dim) == dim)
         return;
 
-      face_values.reinit(cell, f);
-      face_values[displacements].get_function_symmetric_gradients(displacement,
-                                                                  strains);
-
-      const bool on_contact_boundary =
+      const auto             of_face = corners_of_face<dim>(f);
+      OnFace<Point<dim>>     places;
+      OnFace<Tensor<1, dim>> nodal_tractions;
+      const bool             on_contact_boundary =
         id == problem.contact_boundary && contact.traction != nullptr;
-      const auto prescribed = problem.tractions.find(id);
-      if (on_contact_boundary)
-        face_values[displacements].get_function_values(*contact.traction,
-                                                       nodal_tractions);
-      else if (prescribed != problem.tractions.end())
+      for (unsigned int k = 0; k < n_face_corners; ++k)
         {
-          prescribed->second->vector_value_list(
-            face_values.get_quadrature_points(), tractions);
-          for (const unsigned int q : face_values.quadrature_point_indices())
+          places[k] = values.place(of_face[k]);
+          if (on_contact_boundary)
             for (unsigned int c = 0; c < dim; ++c)
-              nodal_tractions[q][c] = tractions[q](c);
+              nodal_tractions[k][c] =
+                (*contact.traction)(cell->vertex_dof_index(of_face[k], c));
         }
-      else
-        std::fill(
-          nodal_tractions.begin(), nodal_tractions.end(), Tensor<1, dim>());
 
-      double squared_residual = 0.;
-      for (const unsigned int q : face_values.quadrature_point_indices())
+      const auto prescribed = problem.tractions.find(id);
+      const bool is_prescribed =
+        !on_contact_boundary && prescribed != problem.tractions.end();
+      if (is_prescribed)
         {
-          Tensor<1, dim> residual = nodal_tractions[q] -
-            stress_times_normal(strains[q],
-                                volumetric_strain.value(cell,
-                                                        trace(strains[q])),
-                                face_values.normal_vector(q));
+          std::vector<Point<dim>> points;
+          for (const Point<dim - 1> &p : face_quadrature.get_points())
+            points.push_back(interpolate(hat_values(p), places));
+          prescribed->second->vector_value_list(points, tractions);
+        }
+
+      double                             squared_residual = 0.;
+      std::array<double, n_face_corners> JxW;
+      for (unsigned int q = 0; q < face_quadrature.size(); ++q)
+        {
+          const Point<dim - 1>  &place = face_quadrature.point(q);
+          const PointOfCell<dim> point(values, point_of_face<dim>(f, place));
+          const Tensor<1, dim>   conormal =
+            (f % 2 == 1 ? 1. : -1.) * point.unit_gradients[f / 2];
+          const double length = conormal.norm();
+          JxW[q] = length * point.determinant * face_quadrature.weight(q);
+
+          Tensor<1, dim> residual =
+            interpolate(hat_values(place), nodal_tractions);
+          if (is_prescribed)
+            for (unsigned int c = 0; c < dim; ++c)
+              residual[c] = tractions[q](c);
+          residual -= stress_times_normal(
+            point.gradient,
+            volumetric_strain.value(cell, trace(point.gradient)),
+            conormal / length);
           for (unsigned int c = 0; c < dim; ++c)
             if (mask[c])
               residual[c] = 0.;
-          squared_residual += residual.norm_square() * face_values.JxW(q);
+          squared_residual += residual.norm_square() * JxW[q];
         }
       add(cell,
-          scaling * face->diameter() * squared_residual,
+          scaling * cell->face(f)->diameter() * squared_residual,
           on_contact_boundary ? estimate.contact : estimate.tractions);
 
       if (on_contact_boundary && contact.normal != nullptr &&
           contact.gap_vector != nullptr)
-        add_complementarity(cell, face);
+        add_complementarity(cell, f, JxW);
     }
 
 
@@ -433,21 +766,21 @@ namespace Friction
     // an edge that separates contact from an open node are the typical case.
     template <int dim>
     void
-    Estimator<dim>::add_complementarity(const CellIterator &cell,
-                                        const FaceIterator &face)
+    Estimator<dim>::add_complementarity(
+      const CellIterator                       &cell,
+      const unsigned int                        f,
+      const std::array<double, n_face_corners> &JxW)
     {
-      const unsigned int n_vertices = face->n_vertices();
-
-      std::vector<double>         pressure(n_vertices);
-      std::vector<double>         distance(n_vertices);
-      std::vector<Tensor<1, dim>> tangential_traction(n_vertices);
-      std::vector<Tensor<1, dim>> slip(n_vertices);
-      for (const unsigned int v : face->vertex_indices())
+      OnFace<double>         pressure, distance;
+      OnFace<Tensor<1, dim>> tangential_traction, slip;
+      const auto             of_face = corners_of_face<dim>(f);
+      for (unsigned int k = 0; k < n_face_corners; ++k)
         {
           Tensor<1, dim> u, t, n, g;
           for (unsigned int c = 0; c < dim; ++c)
             {
-              const types::global_dof_index dof = face->vertex_dof_index(v, c);
+              const types::global_dof_index dof =
+                cell->vertex_dof_index(of_face[k], c);
 
               u[c] = displacement(dof);
               t[c] = (*contact.traction)(dof);
@@ -458,38 +791,24 @@ namespace Friction
           if (n.norm() > 0.)
             n /= n.norm();
 
-          pressure[v]            = -(t * n);
-          distance[v]            = (g - u) * n;
-          tangential_traction[v] = t + pressure[v] * n;
-          slip[v]                = u - (u * n) * n;
+          pressure[k]            = -(t * n);
+          distance[k]            = (g - u) * n;
+          tangential_traction[k] = t + pressure[k] * n;
+          slip[k]                = u - (u * n) * n;
         }
 
-      const FiniteElement<dim> &fe = dof_handler.get_fe();
-
       double sum = 0.;
-      for (const unsigned int q : face_values.quadrature_point_indices())
+      for (unsigned int q = 0; q < face_quadrature.size(); ++q)
         {
-          double         p = 0., d = 0.;
-          Tensor<1, dim> t, s;
-          for (const unsigned int v : face->vertex_indices())
-            {
-              // The shape function of the vertex, through the cell that
-              // face_values lives on.
-              double shape = 0.;
-              for (const unsigned int w : cell->vertex_indices())
-                if (cell->vertex_index(w) == face->vertex_index(v))
-                  shape = face_values.shape_value(
-                    fe.component_to_system_index(0, w), q);
-
-              p += shape * pressure[v];
-              d += shape * distance[v];
-              t += shape * tangential_traction[v];
-              s += shape * slip[v];
-            }
+          const auto           hats = hat_values(face_quadrature.point(q));
+          const double         p    = interpolate(hats, pressure);
+          const double         d    = interpolate(hats, distance);
+          const Tensor<1, dim> t    = interpolate(hats, tangential_traction);
+          const Tensor<1, dim> s    = interpolate(hats, slip);
           sum += (std::max(p, 0.) * std::max(d, 0.) +
                   std::max(
                     0., problem.friction_coefficient * p * s.norm() + t * s)) *
-            face_values.JxW(q);
+            JxW[q];
         }
       add(cell, sum, estimate.complementarity);
     }

@@ -4,13 +4,14 @@
 #include <common/output/left_overs.h>
 #include <common/parallel/collective_error.h>
 
-#include <deal.II/numerics/data_postprocessor.h>
+#include <deal.II/numerics/data_out.h>
 
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <tuple>
+#include <utility>
 
 namespace Friction
 {
@@ -18,29 +19,6 @@ namespace Friction
 
   namespace
   {
-    using NonscalarRanges = std::vector<
-      std::tuple<unsigned int,
-                 unsigned int,
-                 std::string,
-                 DataComponentInterpretation::DataComponentInterpretation>>;
-
-
-
-    DataOutBase::VtkFlags
-    vtk_flags(const unsigned int level)
-    {
-      DataOutBase::VtkFlags flags;
-      flags.time  = level;
-      flags.cycle = level;
-      // The same run shall give the same file.
-      flags.print_date_and_time = false;
-      using CompressionLevel    = decltype(flags.compression_level);
-      flags.compression_level   = CompressionLevel::best_speed;
-      return flags;
-    }
-
-
-
     std::string
     file_name(const std::string &what, const unsigned int level)
     {
@@ -73,87 +51,178 @@ namespace Friction
 
 
 
-    // Stresses follow from the gradients of the displacement, so deal.II can
-    // evaluate them for us where it needs them.
+    // Corners of cells and faces in the order of VTK, which goes around.
+    constexpr std::array<unsigned int, 8> order_of_corners = {
+      {0, 1, 3, 2, 4, 5, 7, 6}};
+
+
+
+    // The points of a piece: those vertices of the mesh that its cells have,
+    // each of them once.
     template <int dim>
-    class Stresses : public DataPostprocessor<dim>
+    class PointNumbers
     {
     public:
-      Stresses(const Material                   &material,
-               const VolumetricStrainField<dim> &volumetric_strain)
-        : lambda(material.lambda())
-        , mu(material.mu())
-        , volumetric_strain(volumetric_strain)
+      PointNumbers(const Triangulation<dim> &triangulation, VtuPiece &piece)
+        : piece(piece)
+        , numbers(triangulation.n_vertices(), unknown)
       {}
 
-      void
-      evaluate_vector_field(
-        const DataPostprocessorInputs::Vector<dim> &inputs,
-        std::vector<Vector<double>> &computed_quantities) const override
+      // The point that this vertex of the mesh is, and whether it is new.
+      std::pair<std::int32_t, bool>
+      add(const unsigned int vertex, const Point<dim> &place)
       {
-        const auto cell = inputs.template get_cell<dim>();
-        for (unsigned int q = 0; q < computed_quantities.size(); ++q)
+        const bool is_new = numbers[vertex] == unknown;
+        if (is_new)
           {
-            // Always a 3x3 tensor: in plane strain the third normal strain
-            // is zero, but the third normal stress is not.
-            SymmetricTensor<2, 3> strain;
-            for (unsigned int i = 0; i < dim; ++i)
-              for (unsigned int j = i; j < dim; ++j)
-                strain[i][j] = 0.5 *
-                  (inputs.solution_gradients[q][i][j] +
-                   inputs.solution_gradients[q][j][i]);
-            const SymmetricTensor<2, 3> stress = 2. * mu * strain +
-              lambda * volumetric_strain.value(cell, trace(strain)) *
-                unit_symmetric_tensor<3>();
-
-            Vector<double> &values = computed_quantities[q];
-            values[0]              = stress[0][0];
-            values[1]              = stress[1][1];
-            values[2]              = stress[2][2];
-            values[3]              = stress[0][1];
-            if (dim == 3)
-              {
-                values[4] = stress[1][2];
-                values[5] = stress[0][2];
-              }
-            values[values.size() - 1] =
-              std::sqrt(1.5) * deviator(stress).norm();
+            numbers[vertex] = static_cast<std::int32_t>(piece.n_points());
+            for (unsigned int c = 0; c < 3; ++c)
+              piece.points.push_back(c < dim ? place[c] : 0.);
           }
-      }
-
-      std::vector<std::string>
-      get_names() const override
-      {
-        std::vector<std::string> names = {
-          "stress_xx", "stress_yy", "stress_zz", "stress_xy"};
-        if (dim == 3)
-          {
-            names.emplace_back("stress_yz");
-            names.emplace_back("stress_xz");
-          }
-        names.emplace_back("von_Mises_stress");
-        return names;
-      }
-
-      std::vector<DataComponentInterpretation::DataComponentInterpretation>
-      get_data_component_interpretation() const override
-      {
-        return std::vector<
-          DataComponentInterpretation::DataComponentInterpretation>(
-          get_names().size(), DataComponentInterpretation::component_is_scalar);
-      }
-
-      UpdateFlags
-      get_needed_update_flags() const override
-      {
-        return update_gradients;
+        piece.corners.push_back(numbers[vertex]);
+        return {numbers[vertex], is_new};
       }
 
     private:
-      const double                      lambda;
-      const double                      mu;
-      const VolumetricStrainField<dim> &volumetric_strain;
+      static constexpr std::int32_t unknown = -1;
+
+      VtuPiece                 &piece;
+      std::vector<std::int32_t> numbers;
     };
+
+
+
+    // Derivatives in the middle of the unit cell of what is bilinear or
+    // trilinear and has these values in the corners, 2^{dim-1} times as large.
+    template <int dim>
+    Tensor<2, dim>
+    derivatives_in_the_middle(
+      const std::array<Tensor<1, dim>, GeometryInfo<dim>::vertices_per_cell>
+        &values)
+    {
+      Tensor<2, dim> derivatives;
+      for (unsigned int v = 0; v < values.size(); ++v)
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int c = 0; c < dim; ++c)
+            derivatives[c][d] += (v >> d) & 1U ? values[v][c] : -values[v][c];
+      return derivatives;
+    }
+
+
+
+    std::vector<std::string>
+    stress_names(const unsigned int dim)
+    {
+      std::vector<std::string> names = {
+        "stress_xx", "stress_yy", "stress_zz", "stress_xy"};
+      if (dim == 3)
+        {
+          names.emplace_back("stress_yz");
+          names.emplace_back("stress_xz");
+        }
+      names.emplace_back("von_Mises_stress");
+      return names;
+    }
+
+
+
+    // In the order of their names.
+    template <int dim>
+    std::array<double, 2 * dim + 1>
+    stress_values(const Tensor<2, dim> &gradient,
+                  const double          volumetric_strain,
+                  const Material       &material)
+    {
+      // Always a 3x3 tensor: in plane strain the third normal strain is zero,
+      // but the third normal stress is not.
+      SymmetricTensor<2, 3> stress =
+        material.lambda() * volumetric_strain * unit_symmetric_tensor<3>();
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = i; j < dim; ++j)
+          stress[i][j] += material.mu() * (gradient[i][j] + gradient[j][i]);
+
+      std::array<double, 2 * dim + 1> values;
+      values[0] = stress[0][0];
+      values[1] = stress[1][1];
+      values[2] = stress[2][2];
+      values[3] = stress[0][1];
+      if constexpr (dim == 3)
+        {
+          values[4] = stress[1][2];
+          values[5] = stress[0][2];
+        }
+      values[2 * dim] = std::sqrt(1.5) * deviator(stress).norm();
+      return values;
+    }
+
+
+
+    // All cells that this process owns. Everything follows from the values in
+    // their corners, by a few products: FEValues would take ten times as long.
+    template <int dim>
+    VtuPiece
+    piece_of_body(const LevelFields<dim> &fields, const Material &material)
+    {
+      const DoFHandler<dim>           &dof_handler = fields.dof_handler;
+      const VolumetricStrainField<dim> volumetric_strain(
+        fields.mapping,
+        dof_handler,
+        material.volumetric_strain(),
+        fields.displacement);
+
+      VtuPiece piece(dim == 2 ? VtuPiece::Cell::quadrilateral
+                              : VtuPiece::Cell::hexahedron);
+      piece.point_fields.push_back({"displacement", true, {}});
+      for (const std::string &name : stress_names(dim))
+        piece.cell_fields.push_back({name, false, {}});
+      if (fields.cell_errors != nullptr)
+        piece.cell_fields.push_back({"estimated_error", false, {}});
+
+      // Differences of displacements need more digits than are written.
+      std::vector<Tensor<1, dim>> displacements;
+      PointNumbers<dim> points(dof_handler.get_triangulation(), piece);
+      std::array<Tensor<1, dim>, GeometryInfo<dim>::vertices_per_cell> places,
+        values;
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            const auto vertices = fields.mapping.get_vertices(cell);
+            for (unsigned int i = 0; i < vertices.size(); ++i)
+              {
+                const unsigned int v = order_of_corners[i];
+                const auto [point, is_new] =
+                  points.add(cell->vertex_index(v), vertices[v]);
+                if (is_new)
+                  {
+                    Tensor<1, dim> u;
+                    for (unsigned int c = 0; c < dim; ++c)
+                      u[c] = fields.displacement(cell->vertex_dof_index(v, c));
+                    displacements.push_back(u);
+                  }
+                places[v] = vertices[v];
+                values[v] = displacements[point];
+              }
+
+            const Tensor<2, dim> gradient = derivatives_in_the_middle(values) *
+              invert(derivatives_in_the_middle(places));
+            const auto stresses =
+              stress_values(gradient,
+                            volumetric_strain.value(cell, trace(gradient)),
+                            material);
+            for (unsigned int i = 0; i < stresses.size(); ++i)
+              piece.cell_fields[i].values.push_back(
+                static_cast<float>(stresses[i]));
+            if (fields.cell_errors != nullptr)
+              piece.cell_fields.back().values.push_back(
+                (*fields.cell_errors)(cell->active_cell_index()));
+          }
+
+      for (const Tensor<1, dim> &u : displacements)
+        for (unsigned int c = 0; c < 3; ++c)
+          piece.point_fields[0].values.push_back(
+            c < dim ? static_cast<float>(u[c]) : 0.F);
+      return piece;
+    }
 
 
 
@@ -166,37 +235,6 @@ namespace Friction
       {"displacement", "traction", "tangential_traction", "normal"}};
     const std::array<std::string, n_contact_scalars> contact_scalar_names = {
       {"pressure", "gap", "distance", "state"}};
-
-
-
-    template <int dim>
-    std::vector<std::string>
-    contact_data_names()
-    {
-      std::vector<std::string> names;
-      for (const std::string &name : contact_vector_names)
-        for (unsigned int c = 0; c < dim; ++c)
-          names.push_back(name);
-      names.insert(
-        names.end(), contact_scalar_names.begin(), contact_scalar_names.end());
-      return names;
-    }
-
-
-
-    template <int dim>
-    NonscalarRanges
-    contact_data_ranges()
-    {
-      NonscalarRanges ranges;
-      for (unsigned int v = 0; v < n_contact_vectors; ++v)
-        ranges.emplace_back(
-          v * dim,
-          (v + 1) * dim - 1,
-          contact_vector_names[v],
-          DataComponentInterpretation::component_is_part_of_vector);
-      return ranges;
-    }
 
 
 
@@ -266,66 +304,47 @@ namespace Friction
   FieldWriter<dim>::write_body(const unsigned int      level,
                                const LevelFields<dim> &fields)
   {
-    const Mapping<dim>              &mapping      = fields.mapping;
-    const DoFHandler<dim>           &dof_handler  = fields.dof_handler;
-    const VectorType                &displacement = fields.displacement;
-    const Vector<float>             *cell_errors  = fields.cell_errors;
-    const VolumetricStrainField<dim> volumetric_strain(
-      mapping, dof_handler, material.volumetric_strain(), displacement);
-    const Stresses<dim> stresses(material, volumetric_strain);
-
-    DataOut<dim> data_out;
-    data_out.attach_dof_handler(dof_handler);
-    data_out.add_data_vector(
-      displacement,
-      std::vector<std::string>(dim, "displacement"),
-      DataOut<dim>::type_dof_data,
-      std::vector<DataComponentInterpretation::DataComponentInterpretation>(
-        dim, DataComponentInterpretation::component_is_part_of_vector));
-    data_out.add_data_vector(displacement, stresses);
-    if (cell_errors != nullptr)
-      data_out.add_data_vector(
-        *cell_errors, "estimated_error", DataOut<dim>::type_cell_data);
-    data_out.set_flags(vtk_flags(level));
-    data_out.build_patches(mapping);
-
-    const MPI_Comm communicator = Compatibility::mpi_communicator(dof_handler);
-    bool           has_cells    = false;
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      has_cells = has_cells || cell->is_locally_owned();
+    const VtuPiece piece = piece_of_body(fields, material);
     if (format == FieldFormat::hdf5)
-      write_body_hdf5(level, data_out, has_cells, communicator);
+      write_body_hdf5(level, fields, piece);
     else
-      write_body_vtu(level, data_out, communicator);
+      write_piece("body",
+                  level,
+                  piece,
+                  body_files,
+                  Compatibility::mpi_communicator(fields.dof_handler));
   }
 
 
 
   template <int dim>
   void
-  FieldWriter<dim>::write_body_vtu(const unsigned int  level,
-                                   const DataOut<dim> &data_out,
-                                   const MPI_Comm      communicator)
+  FieldWriter<dim>::write_piece(const std::string &what,
+                                const unsigned int level,
+                                const VtuPiece    &piece,
+                                TimesAndNames     &files,
+                                const MPI_Comm     communicator)
   {
     const unsigned int rank = Utilities::MPI::this_mpi_process(communicator);
-    remove_old_pieces("body", level, body_files, communicator);
+    remove_old_pieces(what, level, files, communicator);
     on_all_processes(communicator, [&]() {
-      directory.write(piece_name("body", level, rank),
-                      [&](std::ostream &out) { data_out.write_vtu(out); });
+      directory.write(piece_name(what, level, rank),
+                      [&](std::ostream &out) { write_vtu(out, piece, level); });
     });
 
     // The record names the pieces, which are all there now.
     on_first_process(communicator, [&]() {
-      directory.write(
-        file_name("body", level) + ".pvtu", [&](std::ostream &out) {
-          data_out.write_pvtu_record(
-            out,
-            piece_names(
-              "body", level, Utilities::MPI::n_mpi_processes(communicator)));
-        });
-      body_files.emplace_back(level, file_name("body", level) + ".pvtu");
-      directory.write("body.pvd", [&](std::ostream &out) {
-        DataOutBase::write_pvd_record(out, body_files);
+      const std::string record = file_name(what, level) + ".pvtu";
+      directory.write(record, [&](std::ostream &out) {
+        write_pvtu(out,
+                   piece,
+                   piece_names(what,
+                               level,
+                               Utilities::MPI::n_mpi_processes(communicator)));
+      });
+      files.emplace_back(level, record);
+      directory.write(what + ".pvd", [&](std::ostream &out) {
+        DataOutBase::write_pvd_record(out, files);
       });
     });
   }
@@ -368,19 +387,44 @@ namespace Friction
 
 
 
-  // Corners of different cells are different points, although that takes more
-  // room than to keep each vertex once: stresses jump.
+  // deal.II knows no cell data in these files. So corners of different cells
+  // are different points, and what belongs to the cell stands in each of them.
   //
   // On a coarse mesh there may be processes without any cell, which deal.II 9.4
   // does not want to write. So only those with cells take part, and the first
   // of them writes the description of what they have written.
   template <int dim>
   void
-  FieldWriter<dim>::write_body_hdf5(const unsigned int  level,
-                                    const DataOut<dim> &data_out,
-                                    const bool          has_cells,
-                                    const MPI_Comm      communicator)
+  FieldWriter<dim>::write_body_hdf5(const unsigned int      level,
+                                    const LevelFields<dim> &fields,
+                                    const VtuPiece         &piece)
   {
+    const DoFHandler<dim> &dof_handler = fields.dof_handler;
+    const MPI_Comm communicator = Compatibility::mpi_communicator(dof_handler);
+    const bool     has_cells    = piece.n_cells() > 0;
+
+    DataOut<dim> data_out;
+    data_out.attach_dof_handler(dof_handler);
+    data_out.add_data_vector(
+      fields.displacement,
+      std::vector<std::string>(dim, "displacement"),
+      DataOut<dim>::type_dof_data,
+      std::vector<DataComponentInterpretation::DataComponentInterpretation>(
+        dim, DataComponentInterpretation::component_is_part_of_vector));
+    std::vector<Vector<float>> cell_data(piece.cell_fields.size());
+    for (unsigned int i = 0; i < cell_data.size(); ++i)
+      {
+        cell_data[i].reinit(dof_handler.get_triangulation().n_active_cells());
+        auto value = piece.cell_fields[i].values.begin();
+        for (const auto &cell : dof_handler.active_cell_iterators())
+          if (cell->is_locally_owned())
+            cell_data[i](cell->active_cell_index()) = *value++;
+        data_out.add_data_vector(cell_data[i],
+                                 piece.cell_fields[i].name,
+                                 DataOut<dim>::type_cell_data);
+      }
+    data_out.build_patches(fields.mapping);
+
     DataOutBase::DataOutFilter data(
       DataOutBase::DataOutFilterFlags(/*filter_duplicate_vertices=*/false,
                                       /*xdmf_hdf5_output=*/true));
@@ -438,9 +482,6 @@ namespace Friction
 
 
 
-  // There are few faces on the contact boundary, and what we know there are
-  // nodal values. We therefore give the corners of each face to deal.II's
-  // output functions directly.
   template <int dim>
   void
   FieldWriter<dim>::write_contact_boundary(
@@ -488,7 +529,14 @@ namespace Friction
       return data;
     };
 
-    std::vector<DataOutBase::Patch<dim - 1, dim>> patches;
+    VtuPiece piece(dim == 2 ? VtuPiece::Cell::line
+                            : VtuPiece::Cell::quadrilateral);
+    for (const std::string &name : contact_vector_names)
+      piece.point_fields.push_back({name, true, {}});
+    for (const std::string &name : contact_scalar_names)
+      piece.point_fields.push_back({name, false, {}});
+
+    PointNumbers<dim> points(dof_handler.get_triangulation(), piece);
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
         for (const unsigned int f : cell->face_indices())
@@ -497,59 +545,36 @@ namespace Friction
             if (!face->at_boundary() || face->boundary_id() != contact_boundary)
               continue;
 
-            DataOutBase::Patch<dim - 1, dim> patch;
-            patch.patch_index    = patches.size();
-            patch.n_subdivisions = 1;
-            patch.reference_cell = face->reference_cell();
-            patch.data.reinit(std::tuple_size<ContactData<dim>>::value,
-                              face->n_vertices());
             const auto cell_vertices = mapping.get_vertices(cell);
-            for (const unsigned int v : face->vertex_indices())
+            for (unsigned int i = 0; i < face->n_vertices(); ++i)
               {
+                const unsigned int v = order_of_corners[i];
+                Point<dim>         place;
                 for (const unsigned int w : cell->vertex_indices())
                   if (cell->vertex_index(w) == face->vertex_index(v))
-                    patch.vertices[v] = cell_vertices[w];
+                    place = cell_vertices[w];
+                if (!points.add(face->vertex_index(v), place).second)
+                  continue;
 
                 ContactData<dim> data = data_at(face->vertex_dof_index(v, 0));
                 // The displacement is known everywhere.
                 for (unsigned int c = 0; c < dim; ++c)
                   data[c] = displacement(face->vertex_dof_index(v, c));
-                for (unsigned int i = 0; i < data.size(); ++i)
-                  patch.data(i, v) = data[i];
+                for (unsigned int k = 0; k < n_contact_vectors; ++k)
+                  for (unsigned int c = 0; c < 3; ++c)
+                    piece.point_fields[k].values.push_back(
+                      c < dim ? static_cast<float>(data[k * dim + c]) : 0.F);
+                for (unsigned int k = 0; k < n_contact_scalars; ++k)
+                  piece.point_fields[n_contact_vectors + k].values.push_back(
+                    static_cast<float>(data[n_contact_vectors * dim + k]));
               }
-            patches.push_back(patch);
           }
 
-    const std::vector<std::string> names  = contact_data_names<dim>();
-    const NonscalarRanges          ranges = contact_data_ranges<dim>();
-    const DataOutBase::VtkFlags    flags  = vtk_flags(level);
-
-    const MPI_Comm communicator = Compatibility::mpi_communicator(dof_handler);
-    const unsigned int rank = Utilities::MPI::this_mpi_process(communicator);
-    remove_old_pieces("contact", level, contact_files, communicator);
-    on_all_processes(communicator, [&]() {
-      directory.write(
-        piece_name("contact", level, rank), [&](std::ostream &out) {
-          DataOutBase::write_vtu(patches, names, ranges, flags, out);
-        });
-    });
-
-    on_first_process(communicator, [&]() {
-      directory.write(
-        file_name("contact", level) + ".pvtu", [&](std::ostream &out) {
-          DataOutBase::write_pvtu_record(
-            out,
-            piece_names(
-              "contact", level, Utilities::MPI::n_mpi_processes(communicator)),
-            names,
-            ranges,
-            flags);
-        });
-      contact_files.emplace_back(level, file_name("contact", level) + ".pvtu");
-      directory.write("contact.pvd", [&](std::ostream &out) {
-        DataOutBase::write_pvd_record(out, contact_files);
-      });
-    });
+    write_piece("contact",
+                level,
+                piece,
+                contact_files,
+                Compatibility::mpi_communicator(dof_handler));
   }
 
 

@@ -12,14 +12,13 @@
 #include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/lac/vector.h>
 
-#include <deal.II/numerics/data_out.h>
-
 #include <boost/serialization/map.hpp>
 #include <boost/serialization/utility.hpp>
 #include <boost/serialization/vector.hpp>
 
 #include <common/output/history.h>
 #include <common/output/run_directory.h>
+#include <common/output/vtu_file.h>
 #include <common/parameters/material.h>
 #include <common/parameters/parameters.h>
 
@@ -55,13 +54,19 @@ namespace Friction
    * Files, NN being the level: `body-NN.pvtu` and `contact-NN.pvtu` with one
    * `.vtu` piece per process, and `body.pvd`, `contact.pvd` over the levels,
    * which count as times. All files are written beside and renamed. The mesh is
-   * written undeformed; ParaView's filter Warp By Vector deforms it.
+   * written undeformed; ParaView's filter Warp By Vector deforms it. Each
+   * vertex of a process's cells is one point, those that hang included. Data
+   * have single, points double precision; nothing is compressed, see
+   * write_vtu().
    *
-   * Body: the vector `displacement`; `stress_xx`, `stress_yy`, `stress_zz`,
-   * `stress_xy` (3D also `stress_yz`, `stress_xz`) and `von_Mises_stress`,
-   * evaluated in each cell's corners, so their jumps between cells stay
-   * visible; `estimated_error` per cell if it is given. In 2D plane strain is
-   * assumed, from which the third normal stress follows.
+   * Body: the vector `displacement` in the points, and in the cells
+   * `stress_xx`, `stress_yy`, `stress_zz`, `stress_xy` (3D also `stress_yz`,
+   * `stress_xz`) and `von_Mises_stress`, and `estimated_error` if it is given.
+   * Stresses are those in the middle of the cell: of the stresses of bilinear
+   * and trilinear elements, which jump between cells, these are the most
+   * accurate. With VolumetricStrain::mean their trace has that mean in it.
+   * ParaView's filter Cell Data to Point Data averages them in the points. In
+   * 2D plane strain is assumed, from which the third normal stress follows.
    *
    * Contact boundary: the vectors `displacement`, `traction` (of the obstacle
    * on the body), `tangential_traction`, and `normal`; the numbers `pressure`
@@ -72,10 +77,10 @@ namespace Friction
    *
    * With FieldFormat::hdf5 the body is written by all processes together, one
    * `body-NN.h5` per level, and ParaView opens `body.xdmf`, which describes all
-   * of them. There are three differences to `.vtu`, which are due to that
-   * format of deal.II: in 2D vectors have three components there as well, cell
-   * data are repeated in the cell's corners, and numbers have double precision.
-   * The contact boundary remains as above.
+   * of them. The numbers are the same, but that format of deal.II has points
+   * for each cell of its own and no data of cells: those are repeated in the
+   * cell's corners. In 2D the points have two coordinates, and all numbers take
+   * the room of double precision. The contact boundary remains as above.
    */
   template <int dim>
   class FieldWriter
@@ -116,20 +121,21 @@ namespace Friction
   private:
     void write_body(const unsigned int level, const LevelFields<dim> &fields);
 
-    void write_body_vtu(const unsigned int          level,
-                        const dealii::DataOut<dim> &data_out,
-                        const MPI_Comm              communicator);
-
-    void write_body_hdf5(const unsigned int          level,
-                         const dealii::DataOut<dim> &data_out,
-                         const bool                  has_cells,
-                         const MPI_Comm              communicator);
+    void write_body_hdf5(const unsigned int      level,
+                         const LevelFields<dim> &fields,
+                         const VtuPiece         &piece);
 
     void write_contact_boundary(const unsigned int                     level,
                                 const LevelFields<dim>                &fields,
                                 const std::vector<ContactRecord<dim>> &contact);
 
     using TimesAndNames = std::vector<std::pair<double, std::string>>;
+
+    void write_piece(const std::string &what,
+                     const unsigned int level,
+                     const VtuPiece    &piece,
+                     TimesAndNames     &files,
+                     const MPI_Comm     communicator);
 
     void remove_old_pieces(const std::string   &what,
                            const unsigned int   level,

@@ -35,8 +35,8 @@ def save(figure, output, name):
     plt.close(figure)
 
 
-def nodal_average(points, values):
-    """Values that jump between cells, averaged at the nodes."""
-    _, node = np.unique(np.round(points, 6), axis=0, return_inverse=True)
-    node = node.ravel()
-    return (np.bincount(node, values) / np.bincount(node))[node]
+def nodal_average(cells, values):
+    """Values of cells, averaged at the nodes that are their corners."""
+    nodes = cells.ravel()
+    return (np.bincount(nodes, np.repeat(values, cells.shape[1]))
+            / np.bincount(nodes))

@@ -18,7 +18,7 @@ from hertz import THESIS, HertzRun, peak, width
 
 
 def nodal_stress(data):
-    return nodal_average(data["points"], data["von_Mises_stress"])
+    return nodal_average(data["cells"], data["von_Mises_stress"])
 
 
 def draw_body(axes, data, norm, line_width, cells_in=None):

@@ -39,7 +39,7 @@ def surface(data, length=2.0):
     """The faces of the cells on the surface of a cylinder of radius 1, with the
     mean of the von Mises stress at their corners."""
     points = data["points"]
-    stress = nodal_average(points, data["von_Mises_stress"])
+    stress = nodal_average(data["cells"], data["von_Mises_stress"])
     faces = data["cells"][:, vtu.FACES].reshape(-1, 4)
     z = points[faces][:, :, 2]
     r = np.hypot(points[faces][:, :, 0], points[faces][:, :, 1])
@@ -120,7 +120,6 @@ def tangential_stress(run, output):
     data = vtu.read(run.directory / f"contact-{level:02d}.0000.vtu")
     corners = data["points"][data["cells"]]
     stress = np.linalg.norm(data["tangential_traction"], axis=1)
-    stress = nodal_average(data["points"], stress)
     mean = stress[data["cells"]].mean(axis=1)
     norm = Normalize(0, 0.04, clip=True)
 

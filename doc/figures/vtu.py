@@ -1,16 +1,13 @@
-"""Reads the .vtu files that deal.II writes: little-endian arrays, compressed
-by zlib in blocks and coded in base 64, one header of 32 bit integers each."""
+"""Reads the .vtu files that the programs write: XML, and behind it arrays as they
+are in memory, each after its length in bytes, 64 bits wide."""
 
-import base64
 import re
-import struct
-import zlib
 from pathlib import Path
 
 import numpy as np
 
-TYPES = {"Float32": "<f4", "Float64": "<f8", "Int32": "<i4", "UInt32": "<u4",
-         "Int64": "<i8", "UInt64": "<u8", "UInt8": "u1", "Int8": "i1"}
+TYPES = {"Float32": "f4", "Float64": "f8", "Int32": "i4", "UInt8": "u1"}
+ORDERS = {"LittleEndian": "<", "BigEndian": ">"}
 
 
 # The faces of a hexahedron, corners in cyclic order.
@@ -18,40 +15,44 @@ FACES = np.array([[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4],
                   [2, 3, 7, 6], [0, 3, 7, 4], [1, 2, 6, 5]])
 
 
-def decode(text, dtype):
-    """The array in one binary DataArray."""
-    text = "".join(text.split())
-    (n_blocks,) = struct.unpack("<I", base64.b64decode(text[:8])[:4])
-    n_header = 4 * (3 + n_blocks)
-    n_coded = 4 * ((n_header + 2) // 3)
-    header = struct.unpack(f"<{3 + n_blocks}I",
-                           base64.b64decode(text[:n_coded])[:n_header])
-    data = base64.b64decode(text[n_coded:])
-    blocks, start = [], 0
-    for size in header[3:]:
-        blocks.append(zlib.decompress(data[start:start + size]))
-        start += size
-    return np.frombuffer(b"".join(blocks), dtype=dtype)
+def attributes_of(tag):
+    return dict(re.findall(r'(\w+)="([^"]*)"', tag))
+
+
+def split(file_name):
+    """The XML of a file, complete without the arrays, and the arrays' bytes."""
+    contents = Path(file_name).read_bytes()
+    start = contents.index(b"_", contents.index(b"<AppendedData")) + 1
+    end = contents.rindex(b"\n  </AppendedData>")
+    return (contents[:start] + contents[end:]).decode(), contents[start:end]
 
 
 def read(file_name):
-    """All arrays of a file with one piece by name, vectors as rows; the points
-    are called 'points', the cells are the rows of 'cells'."""
-    text = Path(file_name).read_text()
-    text = text[text.index("<Piece"):]
+    """All arrays of a file by name, vectors as rows: of points, the displacement
+    for example, or of cells, like stresses. The points themselves are called
+    'points', the cells are the rows of 'cells', corners in cyclic order."""
+    text, data = split(file_name)
+    order = ORDERS[attributes_of(re.search("<VTKFile[^>]*>", text)[0])["byte_order"]]
     arrays = {}
-    pattern = re.compile(r"<DataArray([^>]*)>([^<]*)</DataArray>")
-    for match in pattern.finditer(text):
-        attributes = dict(re.findall(r'(\w+)="([^"]*)"', match.group(1)))
-        dtype = np.dtype(TYPES[attributes["type"]])
-        if attributes["format"] == "binary":
-            values = decode(match.group(2), dtype)
-        else:
-            values = np.array(match.group(2).split(), dtype=dtype)
+    for tag in re.findall(r"<DataArray[^>]*/>", text):
+        attributes = attributes_of(tag)
+        start = int(attributes["offset"])
+        n_bytes = int(np.frombuffer(data, order + "u8", 1, start)[0])
+        dtype = np.dtype(order + TYPES[attributes["type"]])
+        values = np.frombuffer(data, dtype, n_bytes // dtype.itemsize, start + 8)
         n_components = int(attributes.get("NumberOfComponents", 1))
         if n_components > 1:
             values = values.reshape(-1, n_components)
         arrays[attributes.get("Name", "points")] = values
-    n_cells = len(arrays["offsets"])
-    arrays["cells"] = arrays["connectivity"].reshape(n_cells, -1)
+    ends = arrays["offsets"]
+    arrays["cells"] = arrays["connectivity"].reshape(-1, ends[0] if len(ends) else 1)
     return arrays
+
+
+def fields_of(file_name, kind):
+    """The names of a file's arrays of points ('PointData') or of cells
+    ('CellData')."""
+    text, _ = split(file_name)
+    inside = re.search(f"<{kind}>(.*?)</{kind}>", text, re.DOTALL)[1]
+    return [attributes_of(tag)["Name"]
+            for tag in re.findall(r"<DataArray[^>]*/>", inside)]

@@ -48,6 +48,11 @@ def paint(display, rgb):
     display.Ambient, display.Diffuse = 1, 0
 
 
+def in_points(source):
+    """With the stress as a mean of the cells that meet in a point."""
+    return pv.CellDatatoPointData(Input=source)
+
+
 def colour(display, view, field):
     pv.ColorBy(display, ("POINTS", field))
     display.SetScalarBarVisibility(view, False)
@@ -88,7 +93,7 @@ def show_scale(colours, view, title):
 
 
 def show_body(body, view):
-    display = pv.Show(warped(body, FACTOR), view)
+    display = pv.Show(warped(in_points(body), FACTOR), view)
     show_scale(colour_by_stress(display, view), view, "von Mises stress")
 
     # As it was, behind.
@@ -99,7 +104,7 @@ def show_body(body, view):
 
 def show_contact(body, contact, view):
     # Only with the true displacements do body and obstacle fit together.
-    display = pv.Show(warped(body, 1), view)
+    display = pv.Show(warped(in_points(body), 1), view)
     colour_by_stress(display, view)
 
     pipe = pv.Disk(InnerRadius=0, OuterRadius=PIPE,
@@ -110,7 +115,7 @@ def show_contact(body, contact, view):
     arrows = pv.Glyph(Input=warped(contact, 1), GlyphType="Arrow",
                       OrientationArray=["POINTS", "traction"],
                       ScaleArray=["POINTS", "traction"], ScaleFactor=ARROW,
-                      GlyphMode="Every Nth Point", Stride=6)
+                      GlyphMode="Every Nth Point", Stride=3)
     arrows.GlyphType.TipRadius = 0.06
     arrows.GlyphType.TipLength = 0.2
     arrows.GlyphType.ShaftRadius = 0.022

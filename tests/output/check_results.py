@@ -52,33 +52,51 @@ def check_description(name):
 
 
 def read_pieces(name):
-    """The pieces of a record, those of processes without cells excepted."""
-    pieces = [directory / piece.get("Source")
-              for piece in xml.parse(name).iter("Piece")]
+    """The pieces of a record, and which of their arrays belong to points and to
+    cells: those that the record says."""
+    record = xml.parse(name)
+    fields = [[array.get("Name") for array in record.find(f".//P{kind}")]
+              for kind in ("PointData", "CellData")]
+    pieces = [directory / piece.get("Source") for piece in record.iter("Piece")]
     for piece in pieces:
-        xml.parse(piece)
-    return [vtu.read(piece) for piece in pieces
-            if 'NumberOfPoints="0"' not in piece.read_text()[:2000]]
+        for kind, names in zip(("PointData", "CellData"), fields):
+            assert vtu.fields_of(piece, kind) == names, f"{piece}: {kind}"
+    return [vtu.read(piece) for piece in pieces], *fields
+
+
+def check_piece(name):
+    """The description is XML and its numbers are those of the arrays, which
+    follow each other without gaps up to the end of the file."""
+    text, data = vtu.split(name)
+    description = xml.fromstring(text).find(".//Piece")
+    arrays = vtu.read(name)
+    n_points, n_cells = (int(description.get(f"NumberOf{what}"))
+                         for what in ("Points", "Cells"))
+    assert len(arrays["points"]) == n_points, f"{name}: points"
+    for kind, count in ("PointData", n_points), ("CellData", n_cells):
+        for key in vtu.fields_of(name, kind):
+            assert len(arrays[key]) == count, f"{name}: {key}"
+    assert len(arrays["cells"]) == len(arrays["types"]) == n_cells, f"{name}: cells"
+    corners = np.unique(arrays["cells"])
+    assert np.array_equal(corners, np.arange(n_points)), f"{name}: corners"
+    assert len(data) == sum(array.nbytes + 8 for key, array in arrays.items()
+                            if key != "cells"), f"{name}: size"
 
 
 def check_fields(name):
-    """Numbers are numbers, and on the contact boundary a point has the same
-    in all faces, whichever processes these belong to."""
-    nodal = name.name.startswith("contact")
+    """Numbers are numbers, and a point has the same in the pieces of all processes
+    that have it."""
     known = {}
-    for piece in read_pieces(name):
+    pieces, of_points, of_cells = read_pieces(name)
+    assert "displacement" in of_points, f"{name}: no displacement"
+    assert name.name.startswith("contact") or "von_Mises_stress" in of_cells, \
+        f"{name}: no stress"
+    for piece in pieces:
         for key, values in piece.items():
             assert np.all(np.isfinite(values)), f"{name}: {key}"
-        fields = [key for key in piece
-                  if len(piece[key]) == len(piece["points"])
-                  and key not in ("points", "cells", "connectivity", "types",
-                                  "offsets")]
-        assert "displacement" in fields, f"{name}: no displacement"
-        if not nodal:
-            continue
         for i, point in enumerate(piece["points"]):
-            here = tuple(np.round(point, 6) + 0.)
-            values = {key: piece[key][i] for key in fields}
+            here = tuple(np.round(point, 10) + 0.)
+            values = {key: piece[key][i] for key in of_points}
             for key, value in known.setdefault(here, values).items():
                 assert np.array_equal(value, values[key]), \
                     f"{name}: {key} at {here}"
@@ -97,7 +115,7 @@ def main():
         elif path.suffix == ".pvtu":
             check_fields(path)
         elif path.suffix == ".vtu":
-            xml.parse(path)
+            check_piece(path)
         elif path.suffix == ".pvd":
             for entry in xml.parse(path).iter("DataSet"):
                 assert (directory / entry.get("file")).exists(), path

@@ -195,7 +195,7 @@ full()
 }
 full 4 "$block" Refinement/Levels=0
 expect_sentence 'full device: the history' 'history.h5'
-full 100 "$block" Refinement/Levels=0 'Refinement/Initial refinements=5'
+full 100 "$block" Refinement/Levels=0 'Refinement/Initial refinements=6'
 problem=
 [ $status -eq 2 ] || problem="$problem status $status"
 grep -q '^step-friction-2d: .*cannot be written' stderr ||

@@ -11,6 +11,7 @@ import vtu
 from hertz import HertzRun, peak, width
 
 LEVELS = (4, 5)
+YOUNG, POISSON = 1, 0.325  # as in the scene
 COLORS = {4: (ORANGE, "s"), 5: (BLUE, "o")}
 
 
@@ -47,19 +48,34 @@ def draw_bases(axes):
     axes.spines["bottom"].set_visible(False)
 
 
+def corner_stresses(data):
+    """In all corners of one cell after the other. What is bilinear is linear along
+    the two edges that meet there."""
+    def along_edges(field):
+        values = data[field][:, :2].astype(float)[data["cells"]]
+        return np.stack([np.roll(values, shift, axis=1) - values
+                         for shift in (-1, 1)], axis=-1).reshape(-1, 2, 2)
+
+    gradients = along_edges("displacement") @ np.linalg.inv(along_edges("points"))
+    strains = (gradients + gradients.transpose(0, 2, 1)) / 2
+    mu = YOUNG / (2 * (1 + POISSON))
+    lam = 2 * mu * POISSON / (1 - 2 * POISSON)
+    return (2 * mu * strains
+            + lam * np.trace(strains, axis1=1, axis2=2)[:, None, None] * np.eye(2))
+
+
 def boundary_stress(directory, level, points, normals):
     """The pressure of the finite element solution, averaged over the cells at
     each node."""
     data = vtu.read(directory / f"body-{level:02d}.0000.vtu")
-    corners = data["points"][:, :2]
+    corners = data["points"][data["cells"]][:, :, :2].reshape(-1, 2)
+    stresses = corner_stresses(data)
     result = []
-    for point, (x, y) in zip(points, normals):
+    for point, normal in zip(points, normals):
         here = np.abs(corners - point).max(axis=1) < 1e-6
         if not np.any(here):
             raise Failure("A contact node is no node of the body.")
-        result.append(-np.mean(data["stress_xx"][here] * x * x
-                               + data["stress_yy"][here] * y * y
-                               + 2 * data["stress_xy"][here] * x * y))
+        result.append(-np.mean(stresses[here] @ normal @ normal))
     return np.array(result)
 
 
