@@ -101,7 +101,7 @@ namespace Friction
     : parameters(parameters)
     , rotation(unit_symmetric_tensor<dim>())
   {
-    const std::string here = "scene '" + parameters.name + "': ";
+    const std::string here = subject();
     const auto        check_components =
       [&](const std::vector<std::string> &components,
           const std::string              &where) {
@@ -156,9 +156,7 @@ namespace Friction
         }
     }
 
-    if (parameters.scene.geometry == GeometryKind::mesh_file)
-      mesh_file =
-        std::make_shared<const MeshFile<dim>>(parameters.scene.mesh_file, here);
+    mesh_file = read_mesh_file();
     if (!parameters.contact.boundary.empty())
       contact_id = read_boundary_id(parameters.contact.boundary,
                                     here + "'Contact/Boundary id'");
@@ -279,6 +277,18 @@ namespace Friction
 
 
   template <int dim>
+  std::shared_ptr<const MeshFile<dim>>
+  Scene<dim>::read_mesh_file() const
+  {
+    if (parameters.scene.geometry != GeometryKind::mesh_file)
+      return nullptr;
+    return std::make_shared<const MeshFile<dim>>(parameters.scene.mesh_file,
+                                                 subject());
+  }
+
+
+
+  template <int dim>
   void
   Scene<dim>::make_coarse_mesh(Triangulation<dim> &triangulation) const
   {
@@ -310,7 +320,9 @@ namespace Friction
   void
   Scene<dim>::make_serial_mesh(Triangulation<dim> &mesh) const
   {
-    const std::string here = "scene '" + parameters.name + "': ";
+    const std::string here = subject();
+    if (mesh_file == nullptr)
+      mesh_file = read_mesh_file();
     if (mesh_file != nullptr)
       {
         std::set<types::boundary_id> used = {contact_boundary_id()};
@@ -352,19 +364,9 @@ namespace Friction
       check_id(condition.boundary_id, "Boundary conditions/Traction");
     if (contact_boundary_id() != numbers::invalid_boundary_id)
       check_id(contact_boundary_id(), "Contact/Boundary id");
-    for (const auto &pin : pinned)
-      {
-        const double tolerance = 1e-8 * GridTools::diameter(mesh);
-        bool         found     = false;
-        for (const Point<dim> &vertex : mesh.get_vertices())
-          found = found || vertex.distance(pin.point) < tolerance;
-        if (!found)
-          throw InputError(here +
-                           "'Boundary conditions/Pinned points' names a point "
-                           "that is no vertex of the coarse mesh; correct it.");
-      }
     check_pinned_points(mesh, here);
     check_that_body_can_be_held(*this, mesh, here);
+    mesh_file.reset();
   }
 
 

@@ -93,9 +93,17 @@ namespace Friction
      * the coarse mesh and set its boundary ids and manifolds. Throws
      * InputError if the mesh lacks a boundary id or a pinned point that the
      * scene mentions, or if a part of the body can move as a rigid one, see
-     * check_that_body_can_be_held().
+     * check_that_body_can_be_held(). A mesh file is then forgotten, since it is
+     * as large as the mesh, and read again if another mesh is wanted.
      */
     void make_coarse_mesh(Triangulation<dim> &triangulation) const;
+
+    /// As sentences about it begin.
+    std::string
+    subject() const
+    {
+      return "scene '" + parameters.name + "': ";
+    }
 
     const Material &
     material() const
@@ -196,8 +204,14 @@ namespace Friction
     types::boundary_id read_boundary_id(const std::string &text,
                                         const std::string &where) const;
 
-    Parameters                           parameters;
-    std::shared_ptr<const MeshFile<dim>> mesh_file; ///< or null
+    /// The mesh file, or null if the body comes from elsewhere.
+    std::shared_ptr<const MeshFile<dim>> read_mesh_file() const;
+
+    Parameters parameters;
+
+    /// What read_mesh_file() gave us, until there is a mesh.
+    mutable std::shared_ptr<const MeshFile<dim>> mesh_file;
+
     types::boundary_id contact_id = numbers::invalid_boundary_id;
     Tensor<2, dim>     rotation;
     Obstacle<dim>      the_obstacle;
