@@ -367,10 +367,10 @@ namespace Friction
                   for (unsigned int d = 0; d < dim; ++d)
                     if (condition.components[d])
                       prescribe(face->vertex(v), d);
-        for (const auto &pin : scene.pinned_points())
-          for (const unsigned int v : cell->vertex_indices())
-            if (cell->vertex(v).distance(pin.point) < 1e-8 * cell->diameter())
-              prescribe(pin.point, pin.component);
+        scene.for_each_pin(cell,
+                           [&](const PinnedPoint<dim> &pin, unsigned int) {
+                             prescribe(pin.point, pin.component);
+                           });
       }
 
     std::vector<FreePart<dim>> result;

@@ -241,6 +241,11 @@ namespace Friction
           throw InputError(here +
                            "'Boundary conditions/Pinned points' pins the same "
                            "component of the same point twice; remove one.");
+    std::sort(pinned.begin(),
+              pinned.end(),
+              [](const PinnedPoint<dim> &a, const PinnedPoint<dim> &b) {
+                return a.point[0] < b.point[0];
+              });
 
     for (const ConditionText &text : parameters.boundary_conditions.traction)
       {
@@ -371,36 +376,45 @@ namespace Friction
 
 
 
-  // A vertex may be pinned on a boundary with prescribed displacements, but not
-  // somewhere else.
+  // What is pinned is a vertex. It may lie on a boundary with prescribed
+  // displacements, but not be prescribed to go somewhere else.
   template <int dim>
   void
   Scene<dim>::check_pinned_points(const Triangulation<dim> &mesh,
                                   const std::string        &here) const
   {
-    for (const auto &pin : pinned)
-      for (const auto &cell : mesh.active_cell_iterators())
-        for (const auto &face : cell->face_iterators())
-          for (const auto &condition : dirichlet)
-            if (face->at_boundary() &&
-                face->boundary_id() == condition.boundary_id &&
-                condition.components[pin.component])
-              for (const unsigned int v : face->vertex_indices())
-                if (face->vertex(v).distance(pin.point) <
-                    1e-8 * face->diameter())
-                  {
-                    const double value =
-                      condition.displacement->value(pin.point, pin.component);
-                    if (std::abs(value - pin.value) >
-                        1e-8 * (std::abs(value) + std::abs(pin.value)))
-                      throw InputError(
-                        here +
-                        "'Boundary conditions/Pinned points' and 'Boundary "
-                        "conditions/Displacement' contradict each other in a "
-                        "vertex of boundary id " +
-                        std::to_string(condition.boundary_id) +
-                        "; remove one of them.");
-                  }
+    if (pinned.empty())
+      return;
+    std::set<const PinnedPoint<dim> *> found;
+    for (const auto &cell : mesh.active_cell_iterators())
+      for_each_pin(
+        cell, [&](const PinnedPoint<dim> &pin, const unsigned int v) {
+          found.insert(&pin);
+          for (const auto &face : cell->face_iterators())
+            for (const auto &condition : dirichlet)
+              if (face->at_boundary() &&
+                  face->boundary_id() == condition.boundary_id &&
+                  condition.components[pin.component])
+                for (const unsigned int w : face->vertex_indices())
+                  if (face->vertex_index(w) == cell->vertex_index(v))
+                    {
+                      const double value =
+                        condition.displacement->value(pin.point, pin.component);
+                      if (std::abs(value - pin.value) >
+                          1e-8 * (std::abs(value) + std::abs(pin.value)))
+                        throw InputError(
+                          here +
+                          "'Boundary conditions/Pinned points' and 'Boundary "
+                          "conditions/Displacement' contradict each other in a "
+                          "vertex of boundary id " +
+                          std::to_string(condition.boundary_id) +
+                          "; remove one of them.");
+                    }
+        });
+    if (found.size() < pinned.size())
+      throw InputError(here +
+                       "'Boundary conditions/Pinned points' names a point "
+                       "that is no vertex of the coarse mesh; correct it.");
   }
 
 

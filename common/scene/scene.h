@@ -13,6 +13,8 @@
 
 #include <deal.II/grid/tria.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -117,11 +119,21 @@ namespace Friction
       return dirichlet;
     }
 
+    /// Sorted by x.
     const std::vector<PinnedPoint<dim>> &
     pinned_points() const
     {
       return pinned;
     }
+
+    /**
+     * Calls a function with each component that is pinned in a vertex of a
+     * cell, and the number of that vertex in the cell. How near they have to be
+     * is a matter of the coarse mesh, so that what is pinned there is on any
+     * finer one.
+     */
+    template <typename Cell, typename Action>
+    void for_each_pin(const Cell &cell, const Action &action) const;
 
     const std::vector<TractionCondition<dim>> &
     traction_conditions() const
@@ -226,6 +238,33 @@ namespace Friction
     make_function(const std::vector<std::string> &components,
                   const std::string              &where) const;
   };
+
+
+
+  template <int dim>
+  template <typename Cell, typename Action>
+  void
+  Scene<dim>::for_each_pin(const Cell &cell, const Action &action) const
+  {
+    if (pinned.empty())
+      return;
+    const double tolerance = std::ldexp(1e-8 * cell->diameter(), cell->level());
+    for (const unsigned int v : cell->vertex_indices())
+      {
+        const Point<dim> vertex = cell->vertex(v);
+        for (auto pin =
+               std::lower_bound(pinned.begin(),
+                                pinned.end(),
+                                vertex[0] - tolerance,
+                                [](const PinnedPoint<dim> &p, const double x) {
+                                  return p.point[0] < x;
+                                });
+             pin != pinned.end() && pin->point[0] <= vertex[0] + tolerance;
+             ++pin)
+          if (vertex.distance(pin->point) < tolerance)
+            action(*pin, v);
+      }
+  }
 } // namespace Friction
 
 #endif
