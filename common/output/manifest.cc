@@ -202,8 +202,8 @@ namespace Friction
             return its_file(name) + "is missing";
           const auto length = fs::file_size(fs::path(directory) / name, error);
           if (!error && length != file.length)
-            return its_file(name) + "has " + std::to_string(length) +
-              " bytes instead of " + std::to_string(file.length);
+            return its_file(name) + "has " + counted(length, "byte", "bytes") +
+              " instead of " + std::to_string(file.length);
         }
       for (fs::directory_iterator entry(directory, error), none;
            !error && entry != none;

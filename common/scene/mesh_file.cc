@@ -39,6 +39,23 @@ namespace Friction
 
 
 
+    // "2 triangles of second order", or "1 triangle of second order".
+    std::string
+    counted_kind(const std::size_t n, const std::string &kind)
+    {
+      std::size_t end = kind.find(' ');
+      if (end == kind.npos)
+        end = kind.size();
+      std::string one = kind.substr(0, end);
+      if (one.size() > 5 && one.substr(one.size() - 5) == "hedra")
+        one.replace(one.size() - 1, 1, "on");
+      else
+        one.pop_back();
+      return counted(n, one + kind.substr(end), kind);
+    }
+
+
+
     template <int dim>
     std::string
     describe(const Point<dim> &p)
@@ -160,7 +177,7 @@ namespace Friction
            "step-friction-3d, or save the surface only.");
     for (const auto &other : file.others)
       if (other.first.first == dim)
-        fail("has " + std::to_string(other.second) + " " + other.first.second +
+        fail("has " + counted_kind(other.second, other.first.second) +
              ", but only " + wanted + " of first order are possible here; " +
              (other.first.second.find("order") == std::string::npos
                 ? std::string("recombine them in Gmsh (") +

@@ -196,6 +196,8 @@ def make_meshes():
                square)
     write_mesh('triangles.msh', SQUARE,
                EDGES + [(TRIANGLE, 10, (1, 2, 3)), (TRIANGLE, 10, (1, 3, 4))])
+    write_mesh('triangle.msh', SQUARE + [(2, .5, 0)],
+               square + [(TRIANGLE, 10, (2, 5, 3))])
     write_mesh('second-order.msh',
                SQUARE + [(.5, 0, 0), (1, .5, 0), (.5, 1, 0), (0, .5, 0), (.5, .5, 0)],
                [(LINE3, 3, (1, 2, 5)), (QUAD9, 10, tuple(range(1, 10)))])
@@ -352,6 +354,8 @@ CASES = [
      ['3 cells that share the edge']),
     (5, 'triangles', 'mesh', mesh('triangles'), 'error',
      ['has 2 triangles, but only quadrilaterals']),
+    (5, 'one triangle', 'mesh', mesh('triangle'), 'error',
+     ['has 1 triangle, but only quadrilaterals']),
     (5, 'second order', 'mesh', mesh('second-order'), 'error',
      ['Mesh.ElementOrder = 1']),
     (5, 'lines only', 'mesh', mesh('lines'), 'error', ['has no quadrilaterals']),
