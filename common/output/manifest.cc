@@ -1,6 +1,12 @@
 #include <common/input_error.h>
 #include <common/output/manifest.h>
+#include <common/printable.h>
 
+// A header without a library; zlib knows checksums of 32 bits only. The copy of
+// Boost in deal.II's source may lack it, so CMakeLists.txt looks for it and
+// says what to install. In Debian it comes with libdeal.ii-dev, whose packages
+// of Boost (serialization and others) depend on the one with all headers: so
+// it is with deal.II 9.4.1 in Debian 12 and with 9.7.1 in unstable.
 #include <boost/crc.hpp>
 
 #include <filesystem>
