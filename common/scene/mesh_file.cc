@@ -423,8 +423,8 @@ namespace Friction
 
 
 
-  // groups has all faces with an id; those of them that lie inside are not for
-  // us.
+  // groups has all faces with an id; those of them that lie inside are no
+  // boundary.
   template <int dim>
   void
   MeshFile<dim>::take_groups(const GmshFile &file)
@@ -437,9 +437,14 @@ namespace Friction
           outer.insert(group.second);
           outer_faces.push_back(group);
         }
-    for (const auto &group : groups)
-      if (outer.count(group.second) == 0)
-        inner_groups.insert(group.second);
+    for (const auto &[face, id] : groups)
+      if (!std::binary_search(boundary.begin(), boundary.end(), face))
+        {
+          InnerFaces &inner = inner_faces[id];
+          if (++inner.n == 1)
+            inner.place = place(face);
+          inner.is_whole = outer.count(id) == 0;
+        }
     groups.swap(outer_faces);
     for (const auto &[key, id] : file.names)
       if (key.first == dim - 1)
@@ -484,7 +489,8 @@ namespace Friction
   bool
   MeshFile<dim>::lies_inside(const types::boundary_id id) const
   {
-    return inner_groups.count(id) > 0;
+    const auto inner = inner_faces.find(id);
+    return inner != inner_faces.end() && inner->second.is_whole;
   }
 
 
@@ -494,6 +500,17 @@ namespace Friction
   MeshFile<dim>::make(const std::set<types::boundary_id> &used_ids,
                       Triangulation<dim>                 &triangulation) const
   {
+    for (const auto &[id, inner] : inner_faces)
+      if (used_ids.count(id) > 0 && !inner.is_whole)
+        fail("has a group with the physical id " + std::to_string(id) +
+             " that lies on the boundary, but " +
+             counted(inner.n,
+                     dim == 2 ? "edge" : "face",
+                     dim == 2 ? "edges" : "faces") +
+             " of it inside the body, " + (inner.n == 1 ? "" : "one of them ") +
+             inner.place + ", where nothing can be prescribed; take " +
+             (inner.n == 1 ? "it" : "them") + " out of the group.");
+
     std::vector<CellData<dim>> data(cells.size());
     for (std::size_t c = 0; c < cells.size(); ++c)
       {

@@ -217,6 +217,11 @@ def make_meshes():
                   (LINE, 4, (6, 5))]
     cells = [(QUAD, 1, (1, 2, 5, 4)), (QUAD, 2, (2, 3, 6, 5))]
     write_mesh('interior.msh', strip, long_edges + [(LINE, 8, (2, 5))] + cells)
+    write_mesh('partly-inside.msh', strip,
+               long_edges + [(LINE, 8, (1, 4)), (LINE, 8, (2, 5))] + cells)
+    write_mesh('partly-inside-3d.msh', CUBE + moved(CUBE[4:], 0, 0, 1), FACES[:1] + [
+        (QUAD, 4, (5, 6, 7, 8)), (QUAD, 5, (9, 10, 11, 12)),
+        (HEX, 10, tuple(range(1, 9))), (HEX, 10, tuple(range(5, 13)))])
     write_mesh('twice.msh', strip, long_edges + cells + [(QUAD, 7, (1, 2, 5, 4))])
     # The two cells have vertices of their own in the middle.
     write_mesh('crack.msh', strip + [(1, 0, 0), (1, 1, 0)],
@@ -372,6 +377,12 @@ CASES = [
     (5, 'interior curve', 'mesh', mesh('interior'), 'good', []),
     (5, 'interior curve that is used', 'mesh',
      mesh('interior', **{T: '8: 0, 0'}), 'error', ['lie inside the body']),
+    (5, 'group that lies inside in part', 'mesh',
+     mesh('partly-inside', **{D: '8: 0.01, -0.01'}), 'error',
+     [r'physical id 8 .*boundary, but 1 edge of it inside the body, around \(1, 0.5\)']),
+    (5, 'the same, but nothing uses it', 'mesh', mesh('partly-inside'), 'good', []),
+    (5, 'group that lies inside in part, 3D', 'mesh 3d', mesh('partly-inside-3d'),
+     'error', [r'1 face of it inside the body, around \(0.5, 0.5, 1\)']),
     (5, 'no groups', 'mesh', mesh('no-groups'), 'error',
      ['names boundary id 4, but the mesh has only 0']),
     (5, 'no groups, one boundary', 'mesh',
