@@ -1,4 +1,5 @@
 #include <common/input_error.h>
+#include <common/printable.h>
 #include <common/scene/rigid_motions.h>
 
 #include <Eigen/Eigenvalues>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 namespace Friction
 {
@@ -321,6 +323,42 @@ namespace Friction
 
 
 
+  namespace
+  {
+    // The vertices in which several parts meet.
+    template <int dim>
+    void
+    find_joints(const Triangulation<dim>        &mesh,
+                const std::vector<unsigned int> &part_of_cell,
+                std::vector<FreePart<dim>>      &parts)
+    {
+      std::vector<unsigned int> part_of_vertex(mesh.n_vertices(),
+                                               numbers::invalid_unsigned_int);
+      std::set<unsigned int>    joints;
+      for (const auto &cell : mesh.cell_iterators_on_level(0))
+        for (const unsigned int v : cell->vertex_indices())
+          {
+            unsigned int &part = part_of_vertex[cell->vertex_index(v)];
+            if (part == numbers::invalid_unsigned_int)
+              part = part_of_cell[cell->index()];
+            else if (part != part_of_cell[cell->index()])
+              joints.insert(cell->vertex_index(v));
+          }
+      std::set<std::pair<unsigned int, unsigned int>> seen;
+      for (const auto &cell : mesh.cell_iterators_on_level(0))
+        for (const unsigned int v : cell->vertex_indices())
+          if (const unsigned int number = part_of_cell[cell->index()];
+              joints.count(cell->vertex_index(v)) > 0 &&
+              seen.insert({number, cell->vertex_index(v)}).second)
+            {
+              ++parts[number].n_joints;
+              parts[number].joint = cell->vertex(v);
+            }
+    }
+  } // namespace
+
+
+
   template <int dim>
   std::vector<FreePart<dim>>
   free_parts(const Scene<dim>          &scene,
@@ -345,6 +383,9 @@ namespace Friction
           if (face->at_boundary())
             part.boundary_ids.insert(face->boundary_id());
       }
+
+    if (parts.size() > 1)
+      find_joints(mesh, part_of_cell, parts);
 
     // Each component that is prescribed in a vertex is an equation for the
     // motions.
@@ -448,8 +489,16 @@ namespace Friction
         name << "the part of the body in "
              << describe<dim>(part.lower, size(part)) << " to "
              << describe<dim>(part.upper, size(part)) << " (" << part.n_cells
-             << " of " << part.n_all_cells << " coarse cells, which share no "
-             << (dim == 2 ? "edge" : "face") << " with the others";
+             << " of " << part.n_all_cells << " coarse cells, which share ";
+        if (part.n_joints > 0)
+          name << counted(part.n_joints, "vertex", "vertices")
+               << " with the others, "
+               << (part.n_joints == 1 ? "" : "one of them ")
+               << describe<dim>(part.joint, size(part))
+               << ", but parts are joined by " << (dim == 2 ? "edges" : "faces")
+               << " only";
+        else
+          name << "no " << (dim == 2 ? "edge" : "face") << " with the others";
         if (part.materials.size() > 1 || *part.materials.begin() > 0)
           name << ", physical id " << list(part.materials);
         name << ")";

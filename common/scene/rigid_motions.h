@@ -75,6 +75,11 @@ namespace Friction
     std::set<types::material_id> materials;
     std::set<types::boundary_id> boundary_ids;
 
+    /// How many of its vertices cells of other parts have as well, and one of
+    /// them.
+    unsigned int n_joints = 0;
+    Point<dim>   joint;
+
     /** What the motions do at a point: dim rows, a column for each. */
     Eigen::MatrixXd displacements_at(const Point<dim> &p) const;
   };

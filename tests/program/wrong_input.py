@@ -170,6 +170,12 @@ def make_meshes():
                square + renumbered(square, 4, {}))
     write_mesh('vertex.msh', SQUARE + [(2, 1, 0), (2, 2, 0), (1, 2, 0)],
                square + [(LINE, 5, (3, 5)), (QUAD, 11, (3, 5, 6, 7))])
+    # An arch over a bar: they meet in both ends of the arch.
+    write_mesh('arch.msh', [(x, y, 0) for y in (0, 1) for x in (0, 1.5, 3)] +
+               [(1.5, 1.5, 0), (0, 2, 0), (1.5, 2.5, 0), (3, 2, 0)],
+               [(LINE, 3, (1, 2)), (LINE, 3, (2, 3)), (LINE, 4, (4, 1)),
+                (QUAD, 10, (1, 2, 5, 4)), (QUAD, 10, (2, 3, 6, 5)),
+                (QUAD, 11, (4, 7, 9, 8)), (QUAD, 11, (7, 6, 10, 9))])
     hexahedron = FACES + [(HEX, 10, tuple(range(1, 9)))]
     hinge = {9: 3, 12: 5, 13: 7, 16: 8}
     upper = moved(CUBE, 1, 1, 0)
@@ -283,9 +289,14 @@ CASES = [
     (1, 'part that only contact holds', 'mesh',
      mesh('two-held', **{D: '4: 0.01, -0.01'}), 'good', []),
     (1, 'parts joined in a vertex', 'mesh', mesh('vertex'), 'error',
-     [r'in \(1, 1\) to \(2, 2\)']),
+     [r'in \(1, 1\) to \(2, 2\) .*share 1 vertex with the others, \(1, 1\), but parts '
+      'are joined by edges only']),
+    (1, 'parts joined in two vertices', 'mesh', mesh('arch'), 'error',
+     [r'in \(0, 1\) to \(3, 2.5\) .*share 2 vertices with the others, one of them '
+      r'\((0|3), 1\), but parts are joined by edges only']),
     (1, 'parts joined along an edge', 'mesh 3d', mesh('edge-3d'), 'error',
-     [r'in \(1, 1, 0\) to \(2, 2, 1\)']),
+     [r'in \(1, 1, 0\) to \(2, 2, 1\) .*share 2 vertices with the others, one of them '
+      r'\(1, 1, [01]\), but parts are joined by faces only']),
     (1, 'nothing is held', 'moved', {D: ''}, 'error',
      ['x direction and .*y direction and .*rotation|x direction']),
     (1, 'nothing is held in one direction', 'moved', {D: '3: free, -0.01'}, 'error',
