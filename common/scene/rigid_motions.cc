@@ -168,6 +168,7 @@ namespace Friction
     {
       const unsigned int        n      = contact.cols();
       Eigen::VectorXd           lambda = Eigen::VectorXd::Zero(n);
+      Eigen::VectorXd           gain(n);
       std::vector<unsigned int> active;
       Eigen::VectorXd           rest      = loads;
       const double              tolerance = 1e-10;
@@ -206,11 +207,54 @@ namespace Friction
                     active.erase(active.begin() + i);
                   }
             }
-          rest = loads - contact * lambda;
+          rest = loads;
+          for (const unsigned int p : active)
+            rest -= lambda[p] * contact.col(p);
         }
       return rest;
     }
   } // namespace
+
+
+
+  namespace
+  {
+    // The columns that are not nearly zero, with length one, and each once: on
+    // a plane they are all the same, unless the body can be turned.
+    Eigen::MatrixXd
+    different_directions(const Eigen::MatrixXd &columns)
+    {
+      std::vector<Eigen::VectorXd> list;
+      list.reserve(columns.cols());
+      for (unsigned int p = 0; p < columns.cols(); ++p)
+        if (columns.col(p).norm() > 1e-8)
+          list.push_back(
+            (columns.col(p).normalized() * 1e12).unaryExpr([](const double x) {
+              return std::round(x) / 1e12 + 0.;
+            }));
+      std::sort(list.begin(),
+                list.end(),
+                [](const Eigen::VectorXd &a, const Eigen::VectorXd &b) {
+                  return std::lexicographical_compare(a.data(),
+                                                      a.data() + a.size(),
+                                                      b.data(),
+                                                      b.data() + b.size());
+                });
+      list.erase(std::unique(list.begin(), list.end()), list.end());
+      Eigen::MatrixXd result(columns.rows(), list.size());
+      for (unsigned int p = 0; p < list.size(); ++p)
+        result.col(p) = list[p];
+      return result;
+    }
+  } // namespace
+
+
+
+  Eigen::VectorXd
+  nearest_in_cone(const Eigen::VectorXd &v, const Eigen::MatrixXd &rays)
+  {
+    return v - unbalanced(v, rays);
+  }
 
 
 
@@ -232,16 +276,8 @@ namespace Friction
           if (largest > 1e-8)
             units[i] = 1. / largest;
         }
-    std::vector<Eigen::VectorXd> columns;
-    for (unsigned int p = 0; p < contact.cols(); ++p)
-      {
-        const Eigen::VectorXd column = units.asDiagonal() * contact.col(p);
-        if (column.norm() > 1e-8)
-          columns.push_back(column.normalized());
-      }
-    Eigen::MatrixXd directions(n_rows, columns.size());
-    for (unsigned int p = 0; p < columns.size(); ++p)
-      directions.col(p) = columns[p];
+    const Eigen::MatrixXd directions =
+      different_directions(units.asDiagonal() * contact);
 
     Eigen::VectorXd scaled = units.asDiagonal() * loads;
     const auto      motion = [&](const Eigen::VectorXd &rest) {
