@@ -162,7 +162,8 @@ namespace Friction
 
     // The remainder of the best approximation of loads by contact * lambda,
     // lambda >= 0: the method of Lawson and Hanson, which lets one column after
-    // the other take part. There are never more of them than rows.
+    // the other take part. There are never more of them than rows, so that a
+    // step costs two products with all columns at most.
     Eigen::VectorXd
     unbalanced(const Eigen::VectorXd &loads, const Eigen::MatrixXd &contact)
     {
@@ -176,7 +177,7 @@ namespace Friction
         {
           if (n == 0)
             break;
-          Eigen::VectorXd gain = contact.transpose() * rest;
+          gain.noalias() = contact.transpose() * rest;
           for (const unsigned int p : active)
             gain[p] = -1.;
           Eigen::Index best;
@@ -508,12 +509,18 @@ namespace Friction
   {
     // Several free motions are listed, if nothing but displacements could stop
     // them; one that contact leaves is described as it is.
-    std::string what;
+    std::string  what;
+    unsigned int n_listed = 0;
     if (!holding.is_driven)
       for (unsigned int i = 0; i < part.motions.cols(); ++i)
         if (!is_stopped(Eigen::VectorXd::Unit(part.motions.cols(), i)))
-          what += (what.empty() ? "" : " and ") +
-            describe_motion<dim>(part.motions.col(i), part);
+          {
+            what += (what.empty() ? "" : " and ") +
+              describe_motion<dim>(part.motions.col(i), part);
+            ++n_listed;
+          }
+    if (dim == 3 && n_listed == n_motions<dim>)
+      what = "a displacement in any direction and a rotation around any axis";
     if (what.empty())
       what = describe_motion<dim>(part.motions * holding.motion, part);
 

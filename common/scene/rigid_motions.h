@@ -58,6 +58,14 @@ namespace Friction
   Holding held_by_contact(const Eigen::VectorXd &loads,
                           const Eigen::MatrixXd &contact);
 
+  /**
+   * The vector in the cone of @p rays, a column for each, that is nearest to
+   * @p v: their combination with coefficients that are not negative. It is zero
+   * if all of them point away from v.
+   */
+  Eigen::VectorXd nearest_in_cone(const Eigen::VectorXd &v,
+                                  const Eigen::MatrixXd &rays);
+
   /** A part of the body that prescribed displacements do not hold. */
   template <int dim>
   struct FreePart

@@ -1,8 +1,9 @@
 // Whether a body is held.
 //
 // - Parts of a body: cells that share a face belong together, those that share
-// a
-//   vertex or an edge only do not.
+//   a vertex or an edge only do not.
+// - The vector of a cone that is nearest to another one: the rest is
+//   perpendicular to it, and to no ray of the cone under an acute angle.
 // - held_by_contact() on random problems in one to three unknown motions. If it
 //   finds a motion, nothing stops it, and loads do work on it; if it finds
 //   none, some pressures, of as many nodes as there are motions, balance the
