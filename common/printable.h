@@ -73,6 +73,17 @@ namespace Friction
 
 
 
+  /** A number and what there are so many of: "1 vertex", "2 vertices". */
+  inline std::string
+  counted(const std::size_t  n,
+          const std::string &one,
+          const std::string &several)
+  {
+    return std::to_string(n) + " " + (n == 1 ? one : several);
+  }
+
+
+
   /**
    * What a user gave us, as it may be printed: what is not printable is written
    * as `\xNN`. The result is one line.

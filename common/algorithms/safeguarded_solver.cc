@@ -1,6 +1,7 @@
 #include <common/algorithms/safeguarded_solver.h>
 #include <common/parallel/reductions.h>
 #include <common/parallel/run_clock.h>
+#include <common/printable.h>
 
 #include <algorithm>
 #include <cctype>
@@ -414,7 +415,7 @@ namespace Friction
     for (const SolverAttempt &attempt : report.attempts)
       text += (text.empty() ? "" : "; ") + attempt.name +
         (attempt.converged ? " took " : " was given up after ") +
-        std::to_string(attempt.cycles) + " cycles";
+        counted(attempt.cycles, "cycle", "cycles");
     if (!text.empty())
       text[0] = std::toupper(static_cast<unsigned char>(text[0]));
     return text.empty() ? text : text + ".";

@@ -226,7 +226,7 @@ namespace Friction
             prescribed_value * normal - gap >
               1e-8 * (std::abs(gap) + prescribed_value.norm()))
           throw InputError(
-            "the prescribed displacement of the node at " +
+            scene.subject() + "the prescribed displacement of the node at " +
             describe(node.point) +
             ", which also lies on the contact boundary, pushes it into the "
             "obstacle by " +
@@ -239,7 +239,7 @@ namespace Friction
     for (const auto &e : prescribed_tangents)
       if (std::abs(e * normal) > 1e-8)
         throw InputError(
-          "At " + describe(node.point) +
+          scene.subject() + "at " + describe(node.point) +
           " on the contact boundary a displacement component is prescribed "
           "that has a part in normal direction, so that it competes with "
           "contact: prescribe all components there, or only tangential "

@@ -115,20 +115,17 @@ namespace Friction
     // drifting away: contact can hold it from one side only, and friction does
     // so only where it sticks. Where a boundary condition prescribes the same
     // component already, it takes precedence.
-    for (const auto &pinned : the_scene.pinned_points())
-      for (const auto &cell : dofs.active_cell_iterators())
-        if (!cell->is_artificial())
-          for (const unsigned int v : cell->vertex_indices())
-            if (cell->vertex(v).distance(pinned.point) <
-                1e-8 * cell->diameter())
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (!cell->is_artificial())
+        the_scene.for_each_pin(
+          cell, [&](const PinnedPoint<dim> &pin, const unsigned int v) {
+            const auto dof = cell->vertex_dof_index(v, pin.component);
+            if (!prescribed.is_constrained(dof))
               {
-                const auto dof = cell->vertex_dof_index(v, pinned.component);
-                if (!prescribed.is_constrained(dof))
-                  {
-                    prescribed.add_line(dof);
-                    prescribed.set_inhomogeneity(dof, pinned.value);
-                  }
+                prescribed.add_line(dof);
+                prescribed.set_inhomogeneity(dof, pin.value);
               }
+          });
     prescribed.close();
 
     // What the rows of the matrix couple to, hanging nodes condensed. It comes

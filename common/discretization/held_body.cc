@@ -2,8 +2,14 @@
 #include <common/input_error.h>
 #include <common/scene/rigid_motions.h>
 
+#include <deal.II/base/geometry_info.h>
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
 
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <map>
 #include <string>
 #include <vector>
 
@@ -43,6 +49,80 @@ namespace Friction
               }
           }
     }
+
+    // For each contact node the normals of the faces around it, whatever their
+    // boundary id. Faces are straight here: where they are to be round, the
+    // body could roll on them.
+    template <int dim>
+    std::map<unsigned int, std::vector<Tensor<1, dim>>>
+    normals_of_faces(const Discretization<dim> &discretization)
+    {
+      std::map<unsigned int, std::vector<Tensor<1, dim>>> normals;
+      for (const ContactNode<dim> &p : discretization.contact())
+        normals[p.node];
+      const FE_Q<dim>   element(1);
+      FEFaceValues<dim> values(
+        element, QMidpoint<dim - 1>(), update_normal_vectors);
+      for (const auto &cell :
+           discretization.dof_handler().active_cell_iterators())
+        if (!cell->is_artificial() && cell->at_boundary())
+          for (const unsigned int f : cell->face_indices())
+            if (cell->at_boundary(f))
+              for (unsigned int v = 0; v < cell->face(f)->n_vertices(); ++v)
+                {
+                  const auto found =
+                    normals.find(discretization.constraints().node_of_dof(
+                      cell->vertex_dof_index(
+                        GeometryInfo<dim>::face_to_cell_vertices(f, v), 0)));
+                  if (found == normals.end())
+                    continue;
+                  values.reinit(
+                    typename Triangulation<dim>::cell_iterator(cell), f);
+                  found->second.push_back(values.normal_vector(0));
+                }
+      return normals;
+    }
+
+
+
+    // For each contact node the direction in which the other one of the two
+    // surfaces can take up a pressure, if the normals of the problem are those
+    // of the one: that of the obstacle straight towards it, or of the body, in
+    // a corner or at an edge of it, that which is nearest to the normal.
+    template <int dim>
+    std::vector<Tensor<1, dim>>
+    normals_of_other_surface(const Discretization<dim> &discretization)
+    {
+      std::vector<Tensor<1, dim>> result;
+      const Scene<dim>           &scene = discretization.scene();
+      if (scene.contact_normal() == ContactNormal::body)
+        {
+          for (const ContactNode<dim> &p : discretization.contact())
+            result.push_back(scene.obstacle().empty()
+                               ? p.normal()
+                               : scene.obstacle().normal(p.point, p.normal()));
+          return result;
+        }
+      const auto normals = normals_of_faces(discretization);
+      for (const ContactNode<dim> &p : discretization.contact())
+        {
+          const auto     &around = normals.at(p.node);
+          Eigen::VectorXd v(dim);
+          Eigen::MatrixXd rays(dim, around.size());
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              v[d] = p.normal()[d];
+              for (unsigned int i = 0; i < around.size(); ++i)
+                rays(d, i) = around[i][d];
+            }
+          const Eigen::VectorXd nearest = nearest_in_cone(v, rays);
+          Tensor<1, dim>        normal;
+          for (unsigned int d = 0; d < dim; ++d)
+            normal[d] = nearest[d];
+          result.push_back(normal);
+        }
+      return result;
+    }
   } // namespace
 
 
@@ -64,11 +144,13 @@ namespace Friction
     std::vector<unsigned int>    part_of_node;
     std::vector<Point<dim>>      points;
     find_nodes(discretization, part_of_cell, part_of_node, points);
+    const std::vector<Tensor<1, dim>> other_normals =
+      normals_of_other_surface(discretization);
 
     for (const FreePart<dim> &part : parts)
       {
         const unsigned int  k = part.motions.cols();
-        std::vector<double> work(k, 0.), normals;
+        std::vector<double> work(k, 0.);
         for (unsigned int node = 0; node < part_of_node.size(); ++node)
           if (part_of_node[node] == part.number)
             {
@@ -79,43 +161,53 @@ namespace Friction
                   work[i] +=
                     motions(d, i) * forces.local_element(dim * node + d);
             }
-        for (const ContactNode<dim> &p : discretization.contact())
-          if (part_of_node[p.node] == part.number)
-            {
-              const Eigen::MatrixXd motions = part.displacements_at(p.point);
-              for (unsigned int i = 0; i < k; ++i)
-                {
-                  double normal = 0;
-                  for (unsigned int d = 0; d < dim; ++d)
-                    normal += motions(d, i) * p.normal()[d];
-                  normals.push_back(normal);
-                }
-            }
-
         // All processes come to the same conclusion.
         work = [&]() {
           std::vector<double> sums(k);
           Utilities::MPI::sum(work, communicator, sums);
           return sums;
         }();
-        std::vector<double> all_normals;
-        for (const auto &some :
-             Utilities::MPI::all_gather(communicator, normals))
-          all_normals.insert(all_normals.end(), some.begin(), some.end());
         const Eigen::VectorXd loads =
           Eigen::Map<const Eigen::VectorXd>(work.data(), k);
-        const Eigen::MatrixXd contact = Eigen::Map<const Eigen::MatrixXd>(
-          all_normals.data(), k, all_normals.size() / k);
 
-        const Holding holding = held_by_contact(loads, contact);
-        if (holding.motion.size() == 0)
-          continue;
-        const auto is_stopped = [&](const Eigen::VectorXd &motion) {
-          return held_by_contact(motion.transpose() * loads,
-                                 motion.transpose() * contact)
-                   .motion.size() == 0;
-        };
-        throw InputError(not_held<dim>(scene, part, holding, is_stopped));
+        for (const bool of_problem : {true, false})
+          {
+            std::vector<double> displacements;
+            for (unsigned int p = 0; p < discretization.contact().size(); ++p)
+              {
+                const ContactNode<dim> &node = discretization.contact()[p];
+                if (part_of_node[node.node] != part.number)
+                  continue;
+                const Eigen::MatrixXd motions =
+                  part.displacements_at(node.point);
+                const Tensor<1, dim> &normal =
+                  of_problem ? node.normal() : other_normals[p];
+                for (unsigned int i = 0; i < k; ++i)
+                  {
+                    double sum = 0;
+                    for (unsigned int d = 0; d < dim; ++d)
+                      sum += motions(d, i) * normal[d];
+                    displacements.push_back(sum);
+                  }
+              }
+            std::vector<double> of_all;
+            for (const auto &some :
+                 Utilities::MPI::all_gather(communicator, displacements))
+              of_all.insert(of_all.end(), some.begin(), some.end());
+            const Eigen::MatrixXd contact = Eigen::Map<const Eigen::MatrixXd>(
+              of_all.data(), k, of_all.size() / k);
+
+            const Holding holding = held_by_contact(loads, contact);
+            if (holding.motion.size() == 0)
+              continue;
+            const auto is_stopped = [&](const Eigen::VectorXd &motion) {
+              return held_by_contact(motion.transpose() * loads,
+                                     motion.transpose() * contact)
+                       .motion.size() == 0;
+            };
+            throw InputError(scene.subject() +
+                             not_held<dim>(scene, part, holding, is_stopped));
+          }
       }
   }
 

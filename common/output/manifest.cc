@@ -1,6 +1,12 @@
 #include <common/input_error.h>
 #include <common/output/manifest.h>
+#include <common/printable.h>
 
+// A header without a library; zlib knows checksums of 32 bits only. The copy of
+// Boost in deal.II's source may lack it, so CMakeLists.txt looks for it and
+// says what to install. In Debian it comes with libdeal.ii-dev, whose packages
+// of Boost (serialization and others) depend on the one with all headers: so
+// it is with deal.II 9.4.1 in Debian 12 and with 9.7.1 in unstable.
 #include <boost/crc.hpp>
 
 #include <filesystem>
@@ -202,8 +208,8 @@ namespace Friction
             return its_file(name) + "is missing";
           const auto length = fs::file_size(fs::path(directory) / name, error);
           if (!error && length != file.length)
-            return its_file(name) + "has " + std::to_string(length) +
-              " bytes instead of " + std::to_string(file.length);
+            return its_file(name) + "has " + counted(length, "byte", "bytes") +
+              " instead of " + std::to_string(file.length);
         }
       for (fs::directory_iterator entry(directory, error), none;
            !error && entry != none;

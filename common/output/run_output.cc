@@ -270,9 +270,9 @@ namespace Friction
                               const SolverReport &report)
   {
     the_console.note("No convergence on level " + std::to_string(level) +
-                     " within " + std::to_string(report.cycles.size()) +
-                     " cycles. Certificate: " + report.certificate.describe() +
-                     ".");
+                     " within " +
+                     counted(report.cycles.size(), "cycle", "cycles") +
+                     ". Certificate: " + report.certificate.describe() + ".");
   }
 
 

@@ -1,5 +1,6 @@
 #include <common/output/warnings.h>
 #include <common/parallel/reductions.h>
+#include <common/printable.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/numbers.h>
@@ -150,9 +151,11 @@ namespace Friction
             }
       if (n_pairs > 0)
         warnings.push_back(
-          "Warning: " + std::to_string(n_pairs) + " pair(s) of boundary " +
+          "Warning: " + counted(n_pairs, "pair", "pairs") + " of boundary " +
           (dim == 2 ? "edges" : "faces") +
-          " lie on each other, one of them at " + describe(where) +
+          (n_pairs == 1 ? " lies on each other, at "
+                        : " lie on each other, one of them at ") +
+          describe(where) +
           ", so that the body is cut there; if it should not be, merge the "
           "nodes "
           "of the mesh.");

@@ -3,15 +3,17 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <limits>
+#include <sstream>
 #include <string>
 
 namespace Friction
 {
   namespace
   {
-    // The first number of a file, or none.
+    // The first number of a file, or none; "max" is none.
     double
     number_in(const std::string &file_name)
     {
@@ -22,12 +24,32 @@ namespace Friction
 
 
 
+    // The number after a name at the beginning of a line, or none.
+    double
+    number_after(const std::string &name, const std::string &file_name)
+    {
+      std::ifstream file(file_name);
+      std::string   line;
+      while (std::getline(file, line))
+        {
+          std::istringstream words(line);
+          std::string        first;
+          double             value = 0;
+          if (words >> first >> value && first == name)
+            return value;
+        }
+      return -1.;
+    }
+
+
+
+    // Infinite if the system does not say.
     double
     free_memory()
     {
       std::ifstream file("/proc/meminfo");
       std::string   name, unit;
-      double        value = 0, free = 0;
+      double        value = 0, free = std::numeric_limits<double>::infinity();
       while (file >> name >> value)
         {
           std::getline(file, unit);
@@ -35,11 +57,7 @@ namespace Friction
             free = 1024. * value;
         }
       // Containers and job schedulers set limits of their own.
-      const double limit = number_in("/sys/fs/cgroup/memory.max");
-      const double used  = number_in("/sys/fs/cgroup/memory.current");
-      if (free > 0 && limit > 0 && used >= 0)
-        free = std::min(free, std::max(0., limit - used));
-      return free;
+      return std::min(free, memory_left_to_group("/sys/fs/cgroup"));
     }
 
 
@@ -57,6 +75,34 @@ namespace Friction
 
 
   double
+  memory_left_to_group(const std::string &folder)
+  {
+    double left = std::numeric_limits<double>::infinity();
+    for (const bool is_first_version : {false, true})
+      {
+        const std::string here = folder + (is_first_version ? "/memory/" : "/");
+        const double      limit = number_in(
+          here + (is_first_version ? "memory.limit_in_bytes" : "memory.max"));
+        const double used = number_in(
+          here +
+          (is_first_version ? "memory.usage_in_bytes" : "memory.current"));
+        const double unused_files = number_after(
+          is_first_version ? "total_inactive_file" : "inactive_file",
+          here + "memory.stat");
+        if (limit <= 0.)
+          continue;
+        const bool is_known = used >= 0. && unused_files >= 0.;
+        left                = std::min(
+          left,
+          is_known ? std::max(0., limit - std::max(0., used - unused_files))
+                                  : limit);
+      }
+    return left;
+  }
+
+
+
+  double
   memory_within_reach(const MPI_Comm communicator)
   {
     // One process of each machine asks what is free there.
@@ -67,9 +113,9 @@ namespace Friction
       dealii::Utilities::MPI::this_mpi_process(machine) == 0;
     MPI_Comm_free(&machine);
 
-    const double free    = is_first ? free_memory() : 0.;
-    const bool   unknown = dealii::Utilities::MPI::max(
-                           is_first && free == 0. ? 1 : 0, communicator) > 0;
+    const double free = is_first ? free_memory() : 0.;
+    const bool   unknown =
+      dealii::Utilities::MPI::max(std::isinf(free) ? 1 : 0, communicator) > 0;
     const double sum =
       dealii::Utilities::MPI::sum(free + own_memory(), communicator);
     return unknown ? 0. : sum;

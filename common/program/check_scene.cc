@@ -1,6 +1,7 @@
 #include <common/algorithms/initial_guess.h>
 #include <common/algorithms/nested_iteration.h>
 #include <common/output/warnings.h>
+#include <common/printable.h>
 #include <common/program/check_scene.h>
 
 #include <deal.II/base/mpi.h>
@@ -43,9 +44,10 @@ namespace Friction
     for (const auto id : nest.mesh().get_boundary_ids())
       ids += (ids.empty() ? "" : ", ") + std::to_string(id);
     out << "Scene '" << parameters.name << "': " << nest.mesh().n_cells(0)
-        << " coarse cells with boundary ids " << ids << "; the first mesh has "
-        << n_cells << " cells and " << discretization.dof_handler().n_dofs()
-        << " degrees of freedom.\n";
+        << (nest.mesh().n_cells(0) == 1 ? " coarse cell" : " coarse cells")
+        << " with boundary ids " << ids << "; the first mesh has "
+        << counted(n_cells, "cell", "cells") << " and "
+        << discretization.dof_handler().n_dofs() << " degrees of freedom.\n";
     if (n_nodes > 0)
       out << n_nodes << " of its nodes may touch the obstacle; the nearest is "
           << smallest_gap + 0. << " away from it.\n";

@@ -39,6 +39,23 @@ namespace Friction
 
 
 
+    // "2 triangles of second order", or "1 triangle of second order".
+    std::string
+    counted_kind(const std::size_t n, const std::string &kind)
+    {
+      std::size_t end = kind.find(' ');
+      if (end == kind.npos)
+        end = kind.size();
+      std::string one = kind.substr(0, end);
+      if (one.size() > 5 && one.substr(one.size() - 5) == "hedra")
+        one.replace(one.size() - 1, 1, "on");
+      else
+        one.pop_back();
+      return counted(n, one + kind.substr(end), kind);
+    }
+
+
+
     template <int dim>
     std::string
     describe(const Point<dim> &p)
@@ -160,7 +177,7 @@ namespace Friction
            "step-friction-3d, or save the surface only.");
     for (const auto &other : file.others)
       if (other.first.first == dim)
-        fail("has " + std::to_string(other.second) + " " + other.first.second +
+        fail("has " + counted_kind(other.second, other.first.second) +
              ", but only " + wanted + " of first order are possible here; " +
              (other.first.second.find("order") == std::string::npos
                 ? std::string("recombine them in Gmsh (") +
@@ -406,8 +423,8 @@ namespace Friction
 
 
 
-  // groups has all faces with an id; those of them that lie inside are not for
-  // us.
+  // groups has all faces with an id; those of them that lie inside are no
+  // boundary.
   template <int dim>
   void
   MeshFile<dim>::take_groups(const GmshFile &file)
@@ -420,9 +437,14 @@ namespace Friction
           outer.insert(group.second);
           outer_faces.push_back(group);
         }
-    for (const auto &group : groups)
-      if (outer.count(group.second) == 0)
-        inner_groups.insert(group.second);
+    for (const auto &[face, id] : groups)
+      if (!std::binary_search(boundary.begin(), boundary.end(), face))
+        {
+          InnerFaces &inner = inner_faces[id];
+          if (++inner.n == 1)
+            inner.place = place(face);
+          inner.is_whole = outer.count(id) == 0;
+        }
     groups.swap(outer_faces);
     for (const auto &[key, id] : file.names)
       if (key.first == dim - 1)
@@ -467,7 +489,8 @@ namespace Friction
   bool
   MeshFile<dim>::lies_inside(const types::boundary_id id) const
   {
-    return inner_groups.count(id) > 0;
+    const auto inner = inner_faces.find(id);
+    return inner != inner_faces.end() && inner->second.is_whole;
   }
 
 
@@ -477,6 +500,17 @@ namespace Friction
   MeshFile<dim>::make(const std::set<types::boundary_id> &used_ids,
                       Triangulation<dim>                 &triangulation) const
   {
+    for (const auto &[id, inner] : inner_faces)
+      if (used_ids.count(id) > 0 && !inner.is_whole)
+        fail("has a group with the physical id " + std::to_string(id) +
+             " that lies on the boundary, but " +
+             counted(inner.n,
+                     dim == 2 ? "edge" : "face",
+                     dim == 2 ? "edges" : "faces") +
+             " of it inside the body, " + (inner.n == 1 ? "" : "one of them ") +
+             inner.place + ", where nothing can be prescribed; take " +
+             (inner.n == 1 ? "it" : "them") + " out of the group.");
+
     std::vector<CellData<dim>> data(cells.size());
     for (std::size_t c = 0; c < cells.size(); ++c)
       {

@@ -8,6 +8,7 @@
 #include <deal.II/grid/tria.h>
 
 #include <array>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -24,8 +25,9 @@ namespace Friction
    * order only, lies in no plane (2D), or has a cell with a node twice, without
    * volume, or folded, or more than two cells at a face. Cells that are only
    * numbered the other way round are turned, cells that are there twice
-   * (because they are in two groups) are taken once, and faces with a physical
-   * id that do not lie on the boundary are no boundary.
+   * (because they are in two groups) are taken once. Faces with a physical id
+   * that lie inside are no boundary: nothing is said of them, unless the scene
+   * wants to prescribe something there.
    */
   template <int dim>
   class MeshFile
@@ -44,7 +46,8 @@ namespace Friction
     /**
      * Makes the mesh.
      * @param used_ids  the boundary ids that the scene speaks of. A face in two
-     *   groups has the one of them that is used; that both are is an error.
+     *   groups has the one of them that is used; that both are is an error, and
+     *   so is a group that is used and lies on the boundary in part only.
      */
     void make(const std::set<dealii::types::boundary_id> &used_ids,
               dealii::Triangulation<dim>                 &triangulation) const;
@@ -71,6 +74,15 @@ namespace Friction
       std::array<unsigned int, n_cell_vertices> vertices;
     };
 
+    /// Faces of a group that lie inside the body: how many, one of them, and
+    /// whether the group has no others.
+    struct InnerFaces
+    {
+      std::size_t n = 0;
+      std::string place;
+      bool        is_whole = false;
+    };
+
     [[noreturn]] void fail(const std::string &what) const;
 
     void check_kinds(const GmshFile &file) const;
@@ -88,7 +100,7 @@ namespace Friction
     std::vector<Cell>                                        cells;
     std::vector<Face>                                        boundary;
     std::vector<std::pair<Face, dealii::types::boundary_id>> groups;
-    std::set<dealii::types::boundary_id>                     inner_groups;
+    std::map<dealii::types::boundary_id, InnerFaces>         inner_faces;
     std::map<std::string, int>                               ids_of_names;
   };
 } // namespace Friction

@@ -1,4 +1,5 @@
 #include <common/input_error.h>
+#include <common/printable.h>
 #include <common/scene/rigid_motions.h>
 
 #include <Eigen/Eigenvalues>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 namespace Friction
 {
@@ -160,12 +162,14 @@ namespace Friction
 
     // The remainder of the best approximation of loads by contact * lambda,
     // lambda >= 0: the method of Lawson and Hanson, which lets one column after
-    // the other take part. There are never more of them than rows.
+    // the other take part. There are never more of them than rows, so that a
+    // step costs two products with all columns at most.
     Eigen::VectorXd
     unbalanced(const Eigen::VectorXd &loads, const Eigen::MatrixXd &contact)
     {
       const unsigned int        n      = contact.cols();
       Eigen::VectorXd           lambda = Eigen::VectorXd::Zero(n);
+      Eigen::VectorXd           gain(n);
       std::vector<unsigned int> active;
       Eigen::VectorXd           rest      = loads;
       const double              tolerance = 1e-10;
@@ -173,7 +177,7 @@ namespace Friction
         {
           if (n == 0)
             break;
-          Eigen::VectorXd gain = contact.transpose() * rest;
+          gain.noalias() = contact.transpose() * rest;
           for (const unsigned int p : active)
             gain[p] = -1.;
           Eigen::Index best;
@@ -204,11 +208,54 @@ namespace Friction
                     active.erase(active.begin() + i);
                   }
             }
-          rest = loads - contact * lambda;
+          rest = loads;
+          for (const unsigned int p : active)
+            rest -= lambda[p] * contact.col(p);
         }
       return rest;
     }
   } // namespace
+
+
+
+  namespace
+  {
+    // The columns that are not nearly zero, with length one, and each once: on
+    // a plane they are all the same, unless the body can be turned.
+    Eigen::MatrixXd
+    different_directions(const Eigen::MatrixXd &columns)
+    {
+      std::vector<Eigen::VectorXd> list;
+      list.reserve(columns.cols());
+      for (unsigned int p = 0; p < columns.cols(); ++p)
+        if (columns.col(p).norm() > 1e-8)
+          list.push_back(
+            (columns.col(p).normalized() * 1e12).unaryExpr([](const double x) {
+              return std::round(x) / 1e12 + 0.;
+            }));
+      std::sort(list.begin(),
+                list.end(),
+                [](const Eigen::VectorXd &a, const Eigen::VectorXd &b) {
+                  return std::lexicographical_compare(a.data(),
+                                                      a.data() + a.size(),
+                                                      b.data(),
+                                                      b.data() + b.size());
+                });
+      list.erase(std::unique(list.begin(), list.end()), list.end());
+      Eigen::MatrixXd result(columns.rows(), list.size());
+      for (unsigned int p = 0; p < list.size(); ++p)
+        result.col(p) = list[p];
+      return result;
+    }
+  } // namespace
+
+
+
+  Eigen::VectorXd
+  nearest_in_cone(const Eigen::VectorXd &v, const Eigen::MatrixXd &rays)
+  {
+    return v - unbalanced(v, rays);
+  }
 
 
 
@@ -230,16 +277,8 @@ namespace Friction
           if (largest > 1e-8)
             units[i] = 1. / largest;
         }
-    std::vector<Eigen::VectorXd> columns;
-    for (unsigned int p = 0; p < contact.cols(); ++p)
-      {
-        const Eigen::VectorXd column = units.asDiagonal() * contact.col(p);
-        if (column.norm() > 1e-8)
-          columns.push_back(column.normalized());
-      }
-    Eigen::MatrixXd directions(n_rows, columns.size());
-    for (unsigned int p = 0; p < columns.size(); ++p)
-      directions.col(p) = columns[p];
+    const Eigen::MatrixXd directions =
+      different_directions(units.asDiagonal() * contact);
 
     Eigen::VectorXd scaled = units.asDiagonal() * loads;
     const auto      motion = [&](const Eigen::VectorXd &rest) {
@@ -321,6 +360,42 @@ namespace Friction
 
 
 
+  namespace
+  {
+    // The vertices in which several parts meet.
+    template <int dim>
+    void
+    find_joints(const Triangulation<dim>        &mesh,
+                const std::vector<unsigned int> &part_of_cell,
+                std::vector<FreePart<dim>>      &parts)
+    {
+      std::vector<unsigned int> part_of_vertex(mesh.n_vertices(),
+                                               numbers::invalid_unsigned_int);
+      std::set<unsigned int>    joints;
+      for (const auto &cell : mesh.cell_iterators_on_level(0))
+        for (const unsigned int v : cell->vertex_indices())
+          {
+            unsigned int &part = part_of_vertex[cell->vertex_index(v)];
+            if (part == numbers::invalid_unsigned_int)
+              part = part_of_cell[cell->index()];
+            else if (part != part_of_cell[cell->index()])
+              joints.insert(cell->vertex_index(v));
+          }
+      std::set<std::pair<unsigned int, unsigned int>> seen;
+      for (const auto &cell : mesh.cell_iterators_on_level(0))
+        for (const unsigned int v : cell->vertex_indices())
+          if (const unsigned int number = part_of_cell[cell->index()];
+              joints.count(cell->vertex_index(v)) > 0 &&
+              seen.insert({number, cell->vertex_index(v)}).second)
+            {
+              ++parts[number].n_joints;
+              parts[number].joint = cell->vertex(v);
+            }
+    }
+  } // namespace
+
+
+
   template <int dim>
   std::vector<FreePart<dim>>
   free_parts(const Scene<dim>          &scene,
@@ -346,6 +421,9 @@ namespace Friction
             part.boundary_ids.insert(face->boundary_id());
       }
 
+    if (parts.size() > 1)
+      find_joints(mesh, part_of_cell, parts);
+
     // Each component that is prescribed in a vertex is an equation for the
     // motions.
     std::vector<Eigen::MatrixXd> equations(
@@ -367,10 +445,10 @@ namespace Friction
                   for (unsigned int d = 0; d < dim; ++d)
                     if (condition.components[d])
                       prescribe(face->vertex(v), d);
-        for (const auto &pin : scene.pinned_points())
-          for (const unsigned int v : cell->vertex_indices())
-            if (cell->vertex(v).distance(pin.point) < 1e-8 * cell->diameter())
-              prescribe(pin.point, pin.component);
+        scene.for_each_pin(cell,
+                           [&](const PinnedPoint<dim> &pin, unsigned int) {
+                             prescribe(pin.point, pin.component);
+                           });
       }
 
     std::vector<FreePart<dim>> result;
@@ -431,12 +509,18 @@ namespace Friction
   {
     // Several free motions are listed, if nothing but displacements could stop
     // them; one that contact leaves is described as it is.
-    std::string what;
+    std::string  what;
+    unsigned int n_listed = 0;
     if (!holding.is_driven)
       for (unsigned int i = 0; i < part.motions.cols(); ++i)
         if (!is_stopped(Eigen::VectorXd::Unit(part.motions.cols(), i)))
-          what += (what.empty() ? "" : " and ") +
-            describe_motion<dim>(part.motions.col(i), part);
+          {
+            what += (what.empty() ? "" : " and ") +
+              describe_motion<dim>(part.motions.col(i), part);
+            ++n_listed;
+          }
+    if (dim == 3 && n_listed == n_motions<dim>)
+      what = "a displacement in any direction and a rotation around any axis";
     if (what.empty())
       what = describe_motion<dim>(part.motions * holding.motion, part);
 
@@ -448,8 +532,16 @@ namespace Friction
         name << "the part of the body in "
              << describe<dim>(part.lower, size(part)) << " to "
              << describe<dim>(part.upper, size(part)) << " (" << part.n_cells
-             << " of " << part.n_all_cells << " coarse cells, which share no "
-             << (dim == 2 ? "edge" : "face") << " with the others";
+             << " of " << part.n_all_cells << " coarse cells, which share ";
+        if (part.n_joints > 0)
+          name << counted(part.n_joints, "vertex", "vertices")
+               << " with the others, "
+               << (part.n_joints == 1 ? "" : "one of them ")
+               << describe<dim>(part.joint, size(part))
+               << ", but parts are joined by " << (dim == 2 ? "edges" : "faces")
+               << " only";
+        else
+          name << "no " << (dim == 2 ? "edge" : "face") << " with the others";
         if (part.materials.size() > 1 || *part.materials.begin() > 0)
           name << ", physical id " << list(part.materials);
         name << ")";

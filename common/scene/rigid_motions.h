@@ -58,6 +58,14 @@ namespace Friction
   Holding held_by_contact(const Eigen::VectorXd &loads,
                           const Eigen::MatrixXd &contact);
 
+  /**
+   * The vector in the cone of @p rays, a column for each, that is nearest to
+   * @p v: their combination with coefficients that are not negative. It is zero
+   * if all of them point away from v.
+   */
+  Eigen::VectorXd nearest_in_cone(const Eigen::VectorXd &v,
+                                  const Eigen::MatrixXd &rays);
+
   /** A part of the body that prescribed displacements do not hold. */
   template <int dim>
   struct FreePart
@@ -74,6 +82,11 @@ namespace Friction
     unsigned int                 n_cells = 0, n_all_cells = 0;
     std::set<types::material_id> materials;
     std::set<types::boundary_id> boundary_ids;
+
+    /// How many of its vertices cells of other parts have as well, and one of
+    /// them.
+    unsigned int n_joints = 0;
+    Point<dim>   joint;
 
     /** What the motions do at a point: dim rows, a column for each. */
     Eigen::MatrixXd displacements_at(const Point<dim> &p) const;

@@ -102,7 +102,7 @@ namespace Friction
     : parameters(parameters)
     , rotation(unit_symmetric_tensor<dim>())
   {
-    const std::string here = "scene '" + parameters.name + "': ";
+    const std::string here = subject();
     const auto        check_components =
       [&](const std::vector<std::string> &components,
           const std::string              &where) {
@@ -157,9 +157,7 @@ namespace Friction
         }
     }
 
-    if (parameters.scene.geometry == GeometryKind::mesh_file)
-      mesh_file =
-        std::make_shared<const MeshFile<dim>>(parameters.scene.mesh_file, here);
+    mesh_file = read_mesh_file();
     if (!parameters.contact.boundary.empty())
       contact_id = read_boundary_id(parameters.contact.boundary,
                                     here + "'Contact/Boundary id'");
@@ -244,6 +242,11 @@ namespace Friction
           throw InputError(here +
                            "'Boundary conditions/Pinned points' pins the same "
                            "component of the same point twice; remove one.");
+    std::sort(pinned.begin(),
+              pinned.end(),
+              [](const PinnedPoint<dim> &a, const PinnedPoint<dim> &b) {
+                return a.point[0] < b.point[0];
+              });
 
     for (const ConditionText &text : parameters.boundary_conditions.traction)
       {
@@ -275,6 +278,18 @@ namespace Friction
     if (parameters.contact.friction_law == FrictionLaw::tresca)
       bound = make_function({parameters.contact.friction_bound},
                             here + "'Contact/Friction bound'");
+  }
+
+
+
+  template <int dim>
+  std::shared_ptr<const MeshFile<dim>>
+  Scene<dim>::read_mesh_file() const
+  {
+    if (parameters.scene.geometry != GeometryKind::mesh_file)
+      return nullptr;
+    return std::make_shared<const MeshFile<dim>>(parameters.scene.mesh_file,
+                                                 subject());
   }
 
 
@@ -314,7 +329,9 @@ namespace Friction
   void
   Scene<dim>::make_serial_mesh(Triangulation<dim> &mesh) const
   {
-    const std::string here = "scene '" + parameters.name + "': ";
+    const std::string here = subject();
+    if (mesh_file == nullptr)
+      mesh_file = read_mesh_file();
     if (mesh_file != nullptr)
       {
         std::set<types::boundary_id> used = {contact_boundary_id()};
@@ -356,53 +373,52 @@ namespace Friction
       check_id(condition.boundary_id, "Boundary conditions/Traction");
     if (contact_boundary_id() != numbers::invalid_boundary_id)
       check_id(contact_boundary_id(), "Contact/Boundary id");
-    for (const auto &pin : pinned)
-      {
-        const double tolerance = 1e-8 * GridTools::diameter(mesh);
-        bool         found     = false;
-        for (const Point<dim> &vertex : mesh.get_vertices())
-          found = found || vertex.distance(pin.point) < tolerance;
-        if (!found)
-          throw InputError(here +
-                           "'Boundary conditions/Pinned points' names a point "
-                           "that is no vertex of the coarse mesh; correct it.");
-      }
     check_pinned_points(mesh, here);
     check_that_body_can_be_held(*this, mesh, here);
+    mesh_file.reset();
   }
 
 
 
-  // A vertex may be pinned on a boundary with prescribed displacements, but not
-  // somewhere else.
+  // What is pinned is a vertex. It may lie on a boundary with prescribed
+  // displacements, but not be prescribed to go somewhere else.
   template <int dim>
   void
   Scene<dim>::check_pinned_points(const Triangulation<dim> &mesh,
                                   const std::string        &here) const
   {
-    for (const auto &pin : pinned)
-      for (const auto &cell : mesh.active_cell_iterators())
-        for (const auto &face : cell->face_iterators())
-          for (const auto &condition : dirichlet)
-            if (face->at_boundary() &&
-                face->boundary_id() == condition.boundary_id &&
-                condition.components[pin.component])
-              for (const unsigned int v : face->vertex_indices())
-                if (face->vertex(v).distance(pin.point) <
-                    1e-8 * face->diameter())
-                  {
-                    const double value =
-                      condition.displacement->value(pin.point, pin.component);
-                    if (std::abs(value - pin.value) >
-                        1e-8 * (std::abs(value) + std::abs(pin.value)))
-                      throw InputError(
-                        here +
-                        "'Boundary conditions/Pinned points' and 'Boundary "
-                        "conditions/Displacement' contradict each other in a "
-                        "vertex of boundary id " +
-                        std::to_string(condition.boundary_id) +
-                        "; remove one of them.");
-                  }
+    if (pinned.empty())
+      return;
+    std::set<const PinnedPoint<dim> *> found;
+    for (const auto &cell : mesh.active_cell_iterators())
+      for_each_pin(
+        cell, [&](const PinnedPoint<dim> &pin, const unsigned int v) {
+          found.insert(&pin);
+          for (const auto &face : cell->face_iterators())
+            for (const auto &condition : dirichlet)
+              if (face->at_boundary() &&
+                  face->boundary_id() == condition.boundary_id &&
+                  condition.components[pin.component])
+                for (const unsigned int w : face->vertex_indices())
+                  if (face->vertex_index(w) == cell->vertex_index(v))
+                    {
+                      const double value =
+                        condition.displacement->value(pin.point, pin.component);
+                      if (std::abs(value - pin.value) >
+                          1e-8 * (std::abs(value) + std::abs(pin.value)))
+                        throw InputError(
+                          here +
+                          "'Boundary conditions/Pinned points' and 'Boundary "
+                          "conditions/Displacement' contradict each other in a "
+                          "vertex of boundary id " +
+                          std::to_string(condition.boundary_id) +
+                          "; remove one of them.");
+                    }
+        });
+    if (found.size() < pinned.size())
+      throw InputError(here +
+                       "'Boundary conditions/Pinned points' names a point "
+                       "that is no vertex of the coarse mesh; correct it.");
   }
 
 

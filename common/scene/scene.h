@@ -13,6 +13,8 @@
 
 #include <deal.II/grid/tria.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -93,9 +95,17 @@ namespace Friction
      * the coarse mesh and set its boundary ids and manifolds. Throws
      * InputError if the mesh lacks a boundary id or a pinned point that the
      * scene mentions, or if a part of the body can move as a rigid one, see
-     * check_that_body_can_be_held().
+     * check_that_body_can_be_held(). A mesh file is then forgotten, since it is
+     * as large as the mesh, and read again if another mesh is wanted.
      */
     void make_coarse_mesh(Triangulation<dim> &triangulation) const;
+
+    /// As sentences about it begin.
+    std::string
+    subject() const
+    {
+      return "scene '" + parameters.name + "': ";
+    }
 
     const Material &
     material() const
@@ -109,11 +119,21 @@ namespace Friction
       return dirichlet;
     }
 
+    /// Sorted by x.
     const std::vector<PinnedPoint<dim>> &
     pinned_points() const
     {
       return pinned;
     }
+
+    /**
+     * Calls a function with each component that is pinned in a vertex of a
+     * cell, and the number of that vertex in the cell. How near they have to be
+     * is a matter of the coarse mesh, so that what is pinned there is on any
+     * finer one.
+     */
+    template <typename Cell, typename Action>
+    void for_each_pin(const Cell &cell, const Action &action) const;
 
     const std::vector<TractionCondition<dim>> &
     traction_conditions() const
@@ -196,8 +216,14 @@ namespace Friction
     types::boundary_id read_boundary_id(const std::string &text,
                                         const std::string &where) const;
 
-    Parameters                           parameters;
-    std::shared_ptr<const MeshFile<dim>> mesh_file; ///< or null
+    /// The mesh file, or null if the body comes from elsewhere.
+    std::shared_ptr<const MeshFile<dim>> read_mesh_file() const;
+
+    Parameters parameters;
+
+    /// What read_mesh_file() gave us, until there is a mesh.
+    mutable std::shared_ptr<const MeshFile<dim>> mesh_file;
+
     types::boundary_id contact_id = numbers::invalid_boundary_id;
     Tensor<2, dim>     rotation;
     Obstacle<dim>      the_obstacle;
@@ -212,6 +238,33 @@ namespace Friction
     make_function(const std::vector<std::string> &components,
                   const std::string              &where) const;
   };
+
+
+
+  template <int dim>
+  template <typename Cell, typename Action>
+  void
+  Scene<dim>::for_each_pin(const Cell &cell, const Action &action) const
+  {
+    if (pinned.empty())
+      return;
+    const double tolerance = std::ldexp(1e-8 * cell->diameter(), cell->level());
+    for (const unsigned int v : cell->vertex_indices())
+      {
+        const Point<dim> vertex = cell->vertex(v);
+        for (auto pin =
+               std::lower_bound(pinned.begin(),
+                                pinned.end(),
+                                vertex[0] - tolerance,
+                                [](const PinnedPoint<dim> &p, const double x) {
+                                  return p.point[0] < x;
+                                });
+             pin != pinned.end() && pin->point[0] <= vertex[0] + tolerance;
+             ++pin)
+          if (vertex.distance(pin->point) < tolerance)
+            action(*pin, v);
+      }
+  }
 } // namespace Friction
 
 #endif

@@ -65,7 +65,7 @@ class Input:
         for mesh in self.meshes[self.dimension]:
             shutil.copy(mesh, '.')
         kind = self.random.choice(['values', 'values', 'values', 'text', 'bytes', 'mesh',
-                                   'arguments', 'checkpoint', 'entries'])
+                                   'tags', 'arguments', 'checkpoint', 'entries'])
         getattr(self, 'change_' + kind)()
         write('scene.prm', self.scene)
 
@@ -152,9 +152,9 @@ class Input:
             self.scene = bytes(changed)
         return bytes(changed)
 
-    def change_mesh(self):
-        r = self.random
-        name = r.choice(self.meshes[self.dimension])
+    def take_mesh(self):
+        """Any mesh in the place of the scene's: its name and content."""
+        name = self.random.choice(self.meshes[self.dimension])
         data = read(name)
         name = os.path.basename(name)
         self.scene = re.sub(rb'set Mesh file *=.*', b'set Mesh file = ' + name.encode(),
@@ -162,6 +162,117 @@ class Input:
         if b'Mesh file' not in self.scene:
             self.scene += ('\nsubsection Scene\n  set Geometry = mesh file\n  set Mesh '
                            'file = %s\nend\n' % name).encode()
+        return name, data
+
+    def change_tags(self):
+        """In a mesh: physical ids, types of elements, how many tags there are, groups
+        that overlap, and names, which the scene uses in the place of ids."""
+        r = self.random
+        name, data = self.take_mesh()
+        # The scene that belongs to the mesh, so that it would be solved otherwise.
+        self.scene = [s for s in map(read, self.scenes[self.dimension])
+                      if name.encode() in s][0]
+        lines = data.decode().split('\n')
+        for _ in range(r.choice([1, 1, 2])):
+            if r.random() < .3:
+                self.change_names(lines)
+            elif lines[1].startswith('4'):
+                self.change_entity(lines)
+            else:
+                self.change_elements(lines)
+        write(name, '\n'.join(lines).encode('utf-8', 'replace'))
+
+    def id(self, old='1'):
+        return self.random.choice(['1', '2', '3', '4', '0', '-1', '-' + old, '2147483647',
+                                   '-2147483648', '4294967295', '4294967296', '1e3', '',
+                                   self.number()])
+
+    def type(self):
+        return self.random.choice([str(self.random.randrange(0, 32)), '15', '92', '-1',
+                                   '0', '1000', self.number()])
+
+    def change_elements(self, lines):
+        """Version 2.2: number, type, how many tags, tags, nodes."""
+        r = self.random
+        begin, end = lines.index('$Elements') + 2, lines.index('$EndElements')
+        # One element, or all those of its group.
+        chosen = [r.randrange(begin, end)]
+        if r.random() < .4:
+            chosen = [i for i in range(begin, end)
+                      if lines[i].split()[3:4] == lines[chosen[0]].split()[3:4]]
+        action = r.randrange(4)
+        new, n = (self.type() if action == 1 else self.id()), r.randrange(5)
+        said = r.choice([str(n), '2', self.number()])
+        for i in chosen:
+            words = lines[i].split()
+            if action == 0:
+                lines[i] = ' '.join(words[:3] + [new] + words[4:])
+            elif action == 1:
+                lines[i] = ' '.join(words[:1] + [new] + words[2:])
+            elif action == 2:
+                tags = (words[3:5] + ['7', '8', '9'])[:n]
+                lines[i] = ' '.join(words[:2] + [said] + tags + words[5:])
+            else:
+                lines.insert(end, ' '.join(words[:3] + [new] + words[4:]))
+        if action == 3:
+            lines[begin - 1] = str(int(lines[begin - 1]) + len(chosen))
+
+    def change_entity(self, lines):
+        """Version 4.1: an entity has its tag, a box, how many ids, ids, and what
+        bounds it; blocks of elements have a dimension, a tag, a type and a number."""
+        r = self.random
+        if r.random() < .3:
+            i = lines.index('$Elements') + 2
+            blocks = []
+            while lines[i] != '$EndElements':
+                blocks.append(i)
+                i += 1 + int(lines[i].split()[3])
+            i = r.choice(blocks)
+            words = lines[i].split()
+            k = r.randrange(4)
+            words[k] = self.type() if k == 2 else self.id(words[k])
+        else:
+            first = lines.index('$Entities') + 1
+            n_points = int(lines[first].split()[0])
+            i = r.randrange(first + 1 + n_points, lines.index('$EndEntities'))
+            words = lines[i].split()
+            n = int(words[7])
+            action = r.randrange(3)
+            if action == 0:
+                words[8:8 + n] = [self.id()] * max(n, 1)
+                words[7] = str(max(n, 1))
+            elif action == 1:
+                words[8:8] = [self.id()]
+                words[7] = str(n + 1)
+            else:
+                words[7] = self.id(words[7])
+        lines[i] = ' '.join(words)
+
+    def change_names(self, lines):
+        """Anything may be in a name, and any id may have one."""
+        r = self.random
+        if '$PhysicalNames' in lines and r.random() < .8:
+            del lines[lines.index('$PhysicalNames'):
+                      lines.index('$EndPhysicalNames') + 1]
+        names = [r.choice(['floor', 'top plate', 'wall', '4', 'free', '',
+                           r.choice(PIECES), r.choice(EXPRESSIONS), 'x' * 5000])
+                 for _ in range(r.randint(1, 3))]
+        dimension = str(self.dimension - 1)
+        block = ['%s %s "%s"' % (r.choice([dimension] * 4 + ['0', '3', '4', '-1', 'x']),
+                                 self.id(), n) for n in names]
+        lines[3:3] = (['$PhysicalNames', r.choice([str(len(names))] * 3 +
+                                                  [self.number()])] +
+                      block + ['$EndPhysicalNames'])
+        text = self.scene.decode()
+        for match in reversed(list(re.finditer(
+                r'(?:Boundary id|Displacement|Traction) *= *(\d+)', text))):
+            if r.random() < .5:
+                text = text[:match.start(1)] + r.choice(names) + text[match.end(1):]
+        self.scene = text.encode('utf-8', 'replace')
+
+    def change_mesh(self):
+        r = self.random
+        name, data = self.take_mesh()
         if r.random() < .4:
             write(name, self.change_bytes(data))
             return
@@ -210,15 +321,16 @@ class Fuzzer:
         folders = {2: os.path.abspath(arguments.scenes_2d),
                    3: os.path.abspath(arguments.scenes_3d)}
 
+        # The scenes of a page have meshes, in three dimensions, too.
+        page = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..',
+                            'doc', 'own-scene')
+
         def files(dimension, ending):
-            found = []
-            for folder in (folders[dimension], os.path.join(
-                    os.path.dirname(os.path.abspath(__file__)), 'corpus-%dd' %
-                    dimension)):
-                if os.path.isdir(folder):
-                    found += [os.path.join(folder, f) for f in os.listdir(folder)
-                              if f.endswith(ending)]
-            return sorted(found)
+            return sorted(
+                [os.path.join(folders[dimension], f)
+                 for f in os.listdir(folders[dimension]) if f.endswith(ending)] +
+                [os.path.join(page, f) for f in os.listdir(page)
+                 if f.endswith(ending) and ('-3d' in f) == (dimension == 3)])
         self.scenes = {d: files(d, '.prm') for d in (2, 3)}
         self.meshes = {d: files(d, '.msh') for d in (2, 3)}
         self.found = os.path.abspath(arguments.found)
@@ -279,8 +391,8 @@ class Fuzzer:
             os.chdir(work)
             try:
                 case = Input(seed, self.scenes, self.meshes)
-            except (UnicodeError, IndexError):
-                return
+            except (ValueError, IndexError):
+                return  # what is to be changed is not there
             self.n_inputs += 1
             limits = list(LIMITS)
             verify = (self.a.verify and not self.a.processes and

@@ -170,6 +170,12 @@ def make_meshes():
                square + renumbered(square, 4, {}))
     write_mesh('vertex.msh', SQUARE + [(2, 1, 0), (2, 2, 0), (1, 2, 0)],
                square + [(LINE, 5, (3, 5)), (QUAD, 11, (3, 5, 6, 7))])
+    # An arch over a bar: they meet in both ends of the arch.
+    write_mesh('arch.msh', [(x, y, 0) for y in (0, 1) for x in (0, 1.5, 3)] +
+               [(1.5, 1.5, 0), (0, 2, 0), (1.5, 2.5, 0), (3, 2, 0)],
+               [(LINE, 3, (1, 2)), (LINE, 3, (2, 3)), (LINE, 4, (4, 1)),
+                (QUAD, 10, (1, 2, 5, 4)), (QUAD, 10, (2, 3, 6, 5)),
+                (QUAD, 11, (4, 7, 9, 8)), (QUAD, 11, (7, 6, 10, 9))])
     hexahedron = FACES + [(HEX, 10, tuple(range(1, 9)))]
     hinge = {9: 3, 12: 5, 13: 7, 16: 8}
     upper = moved(CUBE, 1, 1, 0)
@@ -196,6 +202,8 @@ def make_meshes():
                square)
     write_mesh('triangles.msh', SQUARE,
                EDGES + [(TRIANGLE, 10, (1, 2, 3)), (TRIANGLE, 10, (1, 3, 4))])
+    write_mesh('triangle.msh', SQUARE + [(2, .5, 0)],
+               square + [(TRIANGLE, 10, (2, 5, 3))])
     write_mesh('second-order.msh',
                SQUARE + [(.5, 0, 0), (1, .5, 0), (.5, 1, 0), (0, .5, 0), (.5, .5, 0)],
                [(LINE3, 3, (1, 2, 5)), (QUAD9, 10, tuple(range(1, 10)))])
@@ -215,6 +223,11 @@ def make_meshes():
                   (LINE, 4, (6, 5))]
     cells = [(QUAD, 1, (1, 2, 5, 4)), (QUAD, 2, (2, 3, 6, 5))]
     write_mesh('interior.msh', strip, long_edges + [(LINE, 8, (2, 5))] + cells)
+    write_mesh('partly-inside.msh', strip,
+               long_edges + [(LINE, 8, (1, 4)), (LINE, 8, (2, 5))] + cells)
+    write_mesh('partly-inside-3d.msh', CUBE + moved(CUBE[4:], 0, 0, 1), FACES[:1] + [
+        (QUAD, 4, (5, 6, 7, 8)), (QUAD, 5, (9, 10, 11, 12)),
+        (HEX, 10, tuple(range(1, 9))), (HEX, 10, tuple(range(5, 13)))])
     write_mesh('twice.msh', strip, long_edges + cells + [(QUAD, 7, (1, 2, 5, 4))])
     # The two cells have vertices of their own in the middle.
     write_mesh('crack.msh', strip + [(1, 0, 0), (1, 1, 0)],
@@ -276,9 +289,15 @@ CASES = [
     (1, 'part that only contact holds', 'mesh',
      mesh('two-held', **{D: '4: 0.01, -0.01'}), 'good', []),
     (1, 'parts joined in a vertex', 'mesh', mesh('vertex'), 'error',
-     [r'in \(1, 1\) to \(2, 2\)']),
+     [r'in \(1, 1\) to \(2, 2\) .*share 1 vertex with the others, \(1, 1\), but parts '
+      'are joined by edges only']),
+    (1, 'parts joined in two vertices', 'mesh', mesh('arch'), 'error',
+     [r'in \(0, 1\) to \(3, 2.5\) .*share 2 vertices with the others, one of them '
+      r'\((0|3), 1\), but parts are joined by edges only']),
     (1, 'parts joined along an edge', 'mesh 3d', mesh('edge-3d'), 'error',
-     [r'in \(1, 1, 0\) to \(2, 2, 1\)']),
+     [r'in \(1, 1, 0\) to \(2, 2, 1\) .*share 2 vertices with the others, one of them '
+      r'\(1, 1, [01]\), but parts are joined by faces only.* not held against a '
+      'displacement in any direction and a rotation around any axis']),
     (1, 'nothing is held', 'moved', {D: ''}, 'error',
      ['x direction and .*y direction and .*rotation|x direction']),
     (1, 'nothing is held in one direction', 'moved', {D: '3: free, -0.01'}, 'error',
@@ -292,7 +311,7 @@ CASES = [
       'Contact/Boundary id': '-1', 'Contact/Friction coefficient': '0'}, 'error',
      [r'a rotation around the axis through \(0, 0, .* in z direction']),
     (1, 'load away from the obstacle', 'pressed', {T: '3: 0, 0.01'}, 'error',
-     ['y direction: its loads push it there']),
+     ["scene 'scene': the body .*y direction: its loads push it there"]),
     (1, 'no load towards the obstacle', 'pressed', {T: ''}, 'error',
      ['not held against a displacement in y direction: neither']),
     (1, 'load that tips the body over', 'pressed',
@@ -306,6 +325,28 @@ CASES = [
     (1, 'discs smaller than a cell', 'pressed',
      {'Obstacle/Kind': 'rods', 'Obstacle/Centers': '.5, -.1; 1.5, -.1',
       'Obstacle/Radius': '.1', N: 'body', D: '0: 0, free'}, 'good', []),
+    # What the normals of one surface hold only because they are oblique to the other
+    # one, far from where the two touch.
+    (1, 'straight edge on discs', 'pressed',
+     {'Obstacle/Kind': 'rods', 'Obstacle/Centers': '.5, -.1; 1.5, -.1',
+      'Obstacle/Radius': '.1', D: ''}, 'error',
+     ['not held against a displacement in x direction: neither']),
+    (1, 'straight edge far above a disc', 'pressed',
+     {'Obstacle/Kind': 'rods', 'Obstacle/Centers': '1, -2', 'Obstacle/Radius': '1',
+      D: '', P: '(0, 0): free, 0; (2, 0): free, 0'}, 'error',
+     ['not held against a displacement in x direction']),
+    (1, 'corners between discs', 'pressed',
+     {'Obstacle/Kind': 'rods', 'Obstacle/Centers': '-.3, -.4; 2.3, -.4',
+      'Obstacle/Radius': '.5', D: '', T: '3: 0, -.0001'}, 'good', []),
+    (1, 'half disc with its own normals on a plane', 'pressed',
+     {'Scene/Geometry': 'half disc', 'Scene/Size': '', 'Scene/Subdivisions': '',
+      'Obstacle/Point': '0, -1', D: '', P: '(1, 0): free, 0', T: '1: 0, -.001',
+      'Contact/Boundary id': '0', N: 'body'}, 'error',
+     ['not held against a displacement in x direction: neither']),
+    (1, 'half disc that is held sideways', 'pressed',
+     {'Scene/Geometry': 'half disc', 'Scene/Size': '', 'Scene/Subdivisions': '',
+      'Obstacle/Point': '0, -1', D: '', P: '(0, 0): 0, free', T: '1: 0, -.001',
+      'Contact/Boundary id': '0'}, 'good', []),
     (1, 'tall body on a small foot', 'pressed',
      {'Scene/Size': '1, 1200', 'Scene/Subdivisions': '1, 300', D: '',
       P: '(0, 0): 0, free', T: '3: 0, -1e-9', 'Refinement/Initial refinements': '1'},
@@ -352,6 +393,8 @@ CASES = [
      ['3 cells that share the edge']),
     (5, 'triangles', 'mesh', mesh('triangles'), 'error',
      ['has 2 triangles, but only quadrilaterals']),
+    (5, 'one triangle', 'mesh', mesh('triangle'), 'error',
+     ['has 1 triangle, but only quadrilaterals']),
     (5, 'second order', 'mesh', mesh('second-order'), 'error',
      ['Mesh.ElementOrder = 1']),
     (5, 'lines only', 'mesh', mesh('lines'), 'error', ['has no quadrilaterals']),
@@ -368,6 +411,12 @@ CASES = [
     (5, 'interior curve', 'mesh', mesh('interior'), 'good', []),
     (5, 'interior curve that is used', 'mesh',
      mesh('interior', **{T: '8: 0, 0'}), 'error', ['lie inside the body']),
+    (5, 'group that lies inside in part', 'mesh',
+     mesh('partly-inside', **{D: '8: 0.01, -0.01'}), 'error',
+     [r'physical id 8 .*boundary, but 1 edge of it inside the body, around \(1, 0.5\)']),
+    (5, 'the same, but nothing uses it', 'mesh', mesh('partly-inside'), 'good', []),
+    (5, 'group that lies inside in part, 3D', 'mesh 3d', mesh('partly-inside-3d'),
+     'error', [r'1 face of it inside the body, around \(0.5, 0.5, 1\)']),
     (5, 'no groups', 'mesh', mesh('no-groups'), 'error',
      ['names boundary id 4, but the mesh has only 0']),
     (5, 'no groups, one boundary', 'mesh',

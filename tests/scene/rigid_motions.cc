@@ -1,14 +1,16 @@
 // Whether a body is held.
 //
 // - Parts of a body: cells that share a face belong together, those that share
-// a
-//   vertex or an edge only do not.
+//   a vertex or an edge only do not.
+// - The vector of a cone that is nearest to another one: the rest is
+//   perpendicular to it, and to no ray of the cone under an acute angle.
 // - held_by_contact() on random problems in one to three unknown motions. If it
 //   finds a motion, nothing stops it, and loads do work on it; if it finds
 //   none, some pressures, of as many nodes as there are motions, balance the
 //   loads, which is tried for all sets of nodes. Both cannot be.
 // - Bodies that are held by a boundary, by two planes of symmetry, by three
-//   components in two vertices, and with one of these less.
+//   components in two vertices, and with one of these less. What is pinned in a
+//   vertex of the coarse mesh, up to rounding, is pinned on fine ones.
 
 #include <common/input_error.h>
 #include <common/scene/rigid_motions.h>
@@ -171,6 +173,79 @@ namespace
 
 
 
+  void
+  test_cones()
+  {
+    std::mt19937 generator(11);
+    const auto   random = [&]() {
+      return 2. * generator() / generator.max() - 1.;
+    };
+    double       largest_cosine = 0., largest_product = 0.;
+    unsigned int n_inside = 0, n_apex = 0, n_sides = 0;
+    for (unsigned int problem = 0; problem < 3000; ++problem)
+      {
+        const unsigned int dim = 2 + problem % 2, n_rays = problem % 5;
+        Eigen::VectorXd    v(dim);
+        Eigen::MatrixXd    rays(dim, n_rays);
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            v[d] = random();
+            for (unsigned int i = 0; i < n_rays; ++i)
+              rays(d, i) = random();
+          }
+        const Eigen::VectorXd nearest = nearest_in_cone(v, rays);
+        const Eigen::VectorXd rest    = v - nearest;
+        largest_product =
+          std::max(largest_product, std::abs(rest.dot(nearest)));
+        for (unsigned int i = 0; i < n_rays; ++i)
+          largest_cosine = std::max(largest_cosine, rest.dot(rays.col(i)));
+        (rest.norm() < 1e-9        ? n_inside
+           : nearest.norm() < 1e-9 ? n_apex
+                                   : n_sides) += 1;
+      }
+    check(largest_product < 1e-8 && largest_cosine < 1e-8,
+          "what is nearest in a cone");
+    check(n_inside > 100 && n_apex > 100 && n_sides > 100,
+          "inside, at the apex, and on the sides of it");
+  }
+
+
+
+  void
+  test_pins()
+  {
+    // Two thirds with nine digits; the finest cells are a thousand times as
+    // long as the error.
+    Parameters p;
+    p.scene.size                        = {2. / 3., 1.};
+    p.scene.subdivisions                = {1, 1};
+    p.boundary_conditions.pinned_points = {{"(0.666666668, 0)", {"0", "0"}},
+                                           {"(0, 0)", {"free", "0"}}};
+    const Scene<2>   scene(p);
+    Triangulation<2> mesh;
+    scene.make_coarse_mesh(mesh);
+    for (unsigned int level = 0; level < 10; ++level)
+      {
+        for (auto &cell : mesh.active_cell_iterators())
+          if (cell->center().distance(Point<2>(2. / 3., 0.)) < cell->diameter())
+            cell->set_refine_flag();
+        mesh.execute_coarsening_and_refinement();
+      }
+    unsigned int n_found = 0, n_second = 0;
+    for (const auto &cell : mesh.active_cell_iterators())
+      scene.for_each_pin(cell,
+                         [&](const PinnedPoint<2> &pin, const unsigned int v) {
+                           ++n_found;
+                           n_second += pin.component == 1;
+                           if (cell->vertex(v).distance(pin.point) > 1e-8)
+                             n_found = 100;
+                         });
+    check(n_found == 3 && n_second == 2,
+          "pinned on a fine mesh as on a coarse");
+  }
+
+
+
   // What the scene has to say of its mesh, up to a colon that ends the motions.
   template <int dim>
   std::string
@@ -244,5 +319,7 @@ main(int argc, char *argv[])
   Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_parts();
   test_contact();
+  test_cones();
   test_bodies();
+  test_pins();
 }

@@ -57,6 +57,7 @@ run()
   shift 2
   set -- "$program" "$scene" "Output/Directory=$directory" \
     Output/Checkpoint=true Output/Format=hdf5 Output/Times=false \
+    Output/Verification=true \
     ${OVERRIDE:+"$OVERRIDE"} "$@"
   [ "$processes" -gt 1 ] && set -- "$mpiexec" "$numproc_flag" "$processes" "$@"
   "$@" >stdout 2>stderr
@@ -79,6 +80,18 @@ check_files()
   [ -n "$python" ] || { echo "skipped $1: no python3 with h5py"; return; }
   problem=
   "$python" -B "$tests/output/check_results.py" "$2" $3 >message 2>&1 ||
+    problem=" $(tail -1 message)"
+  verdict "$1" "$problem"
+}
+
+# check_certificate NAME DIRECTORY: by the program that shares no code with this one.
+# On one and two processes, which is enough: what it reads is the same on more.
+check_certificate()
+{
+  [ "$n" -le 2 ] || return
+  [ -n "$python" ] || { echo "skipped $1: no python3 with h5py"; return; }
+  problem=
+  "$python" -B "$tests/verify/friction_verify.py" "$2" >message 2>&1 ||
     problem=" $(tail -1 message)"
   verdict "$1" "$problem"
 }
@@ -156,6 +169,7 @@ table whole.txt | paste - killed.txt | awk -v bound="$bound" '
 [ -s differences ] && problem="$problem $(tr '\n' ',' <differences)"
 verdict 'a run that was killed and continued' "$problem"
 check_files 'files of a run that was continued' killed --unfinished
+check_certificate 'certificate of a run that was continued' killed
 
 if [ -n "$python" ]; then
   problem=
@@ -198,6 +212,7 @@ problem=
 ls killed/checkpoint*.part >/dev/null 2>&1 && problem="$problem left-overs"
 verdict 'one more level' "$problem"
 check_files 'files of one more level' killed --unfinished
+check_certificate 'certificate of one more level' killed
 
 # expect_sentence NAME PATTERN
 expect_sentence()
