@@ -9,6 +9,7 @@
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
@@ -68,18 +69,23 @@ namespace Friction
         if (!cell->is_artificial() && cell->at_boundary())
           for (const unsigned int f : cell->face_indices())
             if (cell->at_boundary(f))
-              for (unsigned int v = 0; v < cell->face(f)->n_vertices(); ++v)
-                {
-                  const auto found =
-                    normals.find(discretization.constraints().node_of_dof(
-                      cell->vertex_dof_index(
-                        GeometryInfo<dim>::face_to_cell_vertices(f, v), 0)));
-                  if (found == normals.end())
-                    continue;
-                  values.reinit(
-                    typename Triangulation<dim>::cell_iterator(cell), f);
-                  found->second.push_back(values.normal_vector(0));
-                }
+              {
+                bool is_known = false;
+                for (unsigned int v = 0; v < cell->face(f)->n_vertices(); ++v)
+                  {
+                    const auto found =
+                      normals.find(discretization.constraints().node_of_dof(
+                        cell->vertex_dof_index(
+                          GeometryInfo<dim>::face_to_cell_vertices(f, v), 0)));
+                    if (found == normals.end())
+                      continue;
+                    if (!is_known)
+                      values.reinit(
+                        typename Triangulation<dim>::cell_iterator(cell), f);
+                    is_known = true;
+                    found->second.push_back(values.normal_vector(0));
+                  }
+              }
       return normals;
     }
 
@@ -106,7 +112,15 @@ namespace Friction
       const auto normals = normals_of_faces(discretization);
       for (const ContactNode<dim> &p : discretization.contact())
         {
-          const auto     &around = normals.at(p.node);
+          const auto &around = normals.at(p.node);
+          if (std::any_of(
+                around.begin(), around.end(), [&](const Tensor<1, dim> &n) {
+                  return (n - p.normal()).norm() < 1e-12;
+                }))
+            {
+              result.push_back(p.normal());
+              continue;
+            }
           Eigen::VectorXd v(dim);
           Eigen::MatrixXd rays(dim, around.size());
           for (unsigned int d = 0; d < dim; ++d)
@@ -146,6 +160,13 @@ namespace Friction
     find_nodes(discretization, part_of_cell, part_of_node, points);
     const std::vector<Tensor<1, dim>> other_normals =
       normals_of_other_surface(discretization);
+    double difference = 0;
+    for (unsigned int p = 0; p < discretization.contact().size(); ++p)
+      difference = std::max(
+        difference,
+        (discretization.contact()[p].normal() - other_normals[p]).norm());
+    const bool other_normals_differ =
+      Utilities::MPI::max(difference, communicator) > 1e-12;
 
     for (const FreePart<dim> &part : parts)
       {
@@ -172,6 +193,8 @@ namespace Friction
 
         for (const bool of_problem : {true, false})
           {
+            if (!of_problem && !other_normals_differ)
+              continue;
             std::vector<double> displacements;
             for (unsigned int p = 0; p < discretization.contact().size(); ++p)
               {
