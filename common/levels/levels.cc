@@ -71,7 +71,8 @@ namespace Friction
   std::size_t
   Levels<dim>::memory_consumption() const
   {
-    return level_matrices.memory_consumption() +
+    return level_hierarchy.memory_consumption() +
+      level_matrices.memory_consumption() +
       level_transfer.memory_consumption();
   }
 
