@@ -1,6 +1,7 @@
 #ifndef friction_nodes_node_block_matrix_h
 #define friction_nodes_node_block_matrix_h
 
+#include <common/nodes/huge_pages.h>
 #include <common/nodes/node_block.h>
 
 #include <cstddef>
@@ -144,7 +145,7 @@ namespace Friction
     std::shared_ptr<const NodePattern> pattern;
     const std::size_t                 *row_starts = nullptr;
     const unsigned int                *columns    = nullptr;
-    std::vector<double>                values;
+    HugePageVector<double>             values;
   };
 
 
