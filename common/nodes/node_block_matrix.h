@@ -12,8 +12,12 @@
 namespace Friction
 {
   /**
-   * Which blocks a matrix has, in compressed row storage: the columns of each
-   * row, the diagonal first and the others ascending.
+   * Which blocks a matrix has, in compressed row storage. The columns of row i
+   * are in the order i, i+1, ..., and from the last one on to 0, 1, ..., i-1:
+   * the diagonal comes first. Going through the rows in ascending order, each
+   * from front to back, one meets last the columns of those rows that one has
+   * just been to; in descending order, each from back to front, as well (but
+   * for the diagonal).
    */
   struct NodePattern
   {
@@ -24,6 +28,17 @@ namespace Friction
     n_rows() const
     {
       return starts.size() - 1;
+    }
+
+    /** Whether column @p a comes before column @p b in a row. An unsigned
+     * difference to the diagonal is small to its right, and huge to its left.
+     */
+    static bool
+    is_before(const unsigned int row,
+              const unsigned int a,
+              const unsigned int b)
+    {
+      return a - row < b - row;
     }
 
     /** Takes @p row_columns, which it sorts, as the columns of the next row. */
@@ -51,7 +66,7 @@ namespace Friction
    * nodes after them, as the local elements of
    * LinearAlgebra::distributed::Vector do, so that a vector enters as a plain
    * pointer to its local values, node by node. The first entry of each row is
-   * the diagonal block, the others follow by ascending column.
+   * the diagonal block, for the order of the others see NodePattern.
    */
   template <int dim>
   class NodeBlockMatrix
