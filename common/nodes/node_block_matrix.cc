@@ -70,25 +70,21 @@ namespace Friction
                                  const double *b,
                                  const double *x) const
   {
-    residual(r, b, x, 0, n_rows());
+    residual(r, b, x, {0, n_rows()});
   }
 
 
 
   template <int dim>
   void
-  NodeBlockMatrix<dim>::residual(double            *r,
-                                 const double      *b,
-                                 const double      *x,
-                                 const unsigned int begin,
-                                 const unsigned int end) const
+  NodeBlockMatrix<dim>::residual(double         *r,
+                                 const double   *b,
+                                 const double   *x,
+                                 const RowRange &rows,
+                                 const RowRange &ahead) const
   {
-    for (unsigned int i = begin; i < end; ++i)
-      {
-        const NodeValue<dim> value = row_times(i, x);
-        for (int d = 0; d < dim; ++d)
-          r[dim * i + d] = b[dim * i + d] - value[d];
-      }
+    Prefetch fetch = prefetch(ahead, rows.second - rows.first);
+    RowKernels::residual<dim>(this->rows(), rows, r, b, x, fetch);
   }
 
 
