@@ -19,9 +19,10 @@ namespace Friction
 
 
 
-    // Where the block of a column is that the row is known to have. Half of all
-    // steps of a search go one way and half the other, which no processor can
-    // guess; this one has no jumps that depend on what it finds.
+    // Where the block of a column is that the row is known to have, by the
+    // order of NodePattern::is_before(). Half of all steps of a search go one
+    // way and half the other, which no processor can guess; this one has no
+    // jumps that depend on what it finds.
     inline std::size_t
     position(const NodePattern &pattern,
              const unsigned int row,
@@ -29,14 +30,11 @@ namespace Friction
     {
       const unsigned int *const begin = pattern.columns.data();
       const unsigned int       *it    = begin + pattern.starts[row];
-      if (*it == column)
-        return it - begin;
-      ++it;
-      std::size_t n = begin + pattern.starts[row + 1] - it;
+      std::size_t               n     = begin + pattern.starts[row + 1] - it;
       while (n > 1)
         {
           const std::size_t half = n / 2;
-          it                     = it[half] <= column ? it + half : it;
+          it = NodePattern::is_before(row, column, it[half]) ? it : it + half;
           n -= half;
         }
       Assert(*it == column, ExcInternalError());

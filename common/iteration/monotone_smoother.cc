@@ -142,23 +142,22 @@ namespace Friction
     schedule.run(
       sweeps,
       /*with residual =*/!backwards,
-      [&](const unsigned int stage, const unsigned int chunk) {
+      [&](const unsigned int stage,
+          const unsigned int chunk,
+          const RowRange    &ahead) {
         const bool update =
           x.updates_normal_forces && (stage > 0 || !trust_first_normal_forces);
         if (stage == sweeps.number)
-          matrix.residual(x.residual.begin(),
-                          f,
-                          u,
-                          schedule.chunk(chunk).first,
-                          schedule.chunk(chunk).second);
+          matrix.residual(
+            x.residual.begin(), f, u, schedule.chunk(chunk), ahead);
         else if (backwards)
           {
             relax_contact_nodes(chunk, update);
-            ordinary_nodes->relax_chunk(chunk, f, u, backwards);
+            ordinary_nodes->relax_chunk(chunk, f, u, backwards, ahead);
           }
         else
           {
-            ordinary_nodes->relax_chunk(chunk, f, u, backwards);
+            ordinary_nodes->relax_chunk(chunk, f, u, backwards, ahead);
             relax_contact_nodes(chunk, update);
           }
       },

@@ -26,15 +26,13 @@ namespace Friction
     sweep_schedule.run(
       sweeps,
       residual != nullptr,
-      [&](const unsigned int stage, const unsigned int chunk) {
+      [&](const unsigned int stage,
+          const unsigned int chunk,
+          const RowRange    &ahead) {
         if (stage == sweeps.number)
-          A->residual(residual,
-                      b,
-                      x,
-                      sweep_schedule.chunk(chunk).first,
-                      sweep_schedule.chunk(chunk).second);
+          A->residual(residual, b, x, sweep_schedule.chunk(chunk), ahead);
         else
-          relax_chunk(chunk, b, x, sweeps.backwards);
+          relax_chunk(chunk, b, x, sweeps.backwards, ahead);
       },
       ghosts,
       x);
@@ -47,33 +45,22 @@ namespace Friction
   GaussSeidel<dim>::relax_chunk(const unsigned int chunk,
                                 const double      *b,
                                 double            *x,
-                                const bool         backwards) const
+                                const bool         backwards,
+                                const RowRange    &ahead) const
   {
-    const NodeBlockMatrix<dim> &matrix  = *A;
-    const NodeBlock<dim>       *inverse = inverse_diagonals->data();
-    // A call for each node would cost more than its arithmetic.
-    const auto relax =
-      [ =, &matrix ](const unsigned int i) __attribute__((always_inline))
-    {
-      const NodeValue<dim> product = matrix.row_times(i, x);
-      NodeValue<dim>       defect;
-      for (int d = 0; d < dim; ++d)
-        defect[d] = b[dim * i + d] - product[d];
-      const NodeValue<dim> correction =
-        times<dim>(inverse[i].data(), defect.data());
-      for (int d = 0; d < dim; ++d)
-        x[dim * i + d] += correction[d];
-    };
-
-    const NodeRanges &nodes = sweep_schedule.nodes(chunk);
-    if (!backwards)
-      for (unsigned int range = 0; range < nodes.size(); ++range)
-        for (unsigned int i = nodes[range].first; i < nodes[range].second; ++i)
-          relax(i);
-    else
-      for (unsigned int range = nodes.size(); range-- > 0;)
-        for (unsigned int i = nodes[range].second; i-- > nodes[range].first;)
-          relax(i);
+    const BlockRows<dim>  rows    = A->rows();
+    const NodeBlock<dim> *inverse = inverse_diagonals->data();
+    const NodeRanges     &nodes   = sweep_schedule.nodes(chunk);
+    const RowRange        all     = sweep_schedule.chunk(chunk);
+    Prefetch              fetch   = A->prefetch(ahead, all.second - all.first);
+    for (unsigned int k = 0; k < nodes.size(); ++k)
+      RowKernels::relax<dim>(rows,
+                             inverse,
+                             nodes[backwards ? nodes.size() - 1 - k : k],
+                             backwards,
+                             b,
+                             x,
+                             fetch);
   }
 
 

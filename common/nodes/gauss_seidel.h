@@ -44,11 +44,13 @@ namespace Friction
              double        *residual = nullptr) const;
 
     /** One sweep over the nodes of one chunk of schedule(), for a caller that
-     * relaxes other nodes in between. */
+     * relaxes other nodes in between. Meanwhile has the rows @p ahead brought
+     * into the cache. */
     void relax_chunk(const unsigned int chunk,
                      const double      *b,
                      double            *x,
-                     const bool         backwards) const;
+                     const bool         backwards,
+                     const RowRange    &ahead = {}) const;
 
     const SweepSchedule<dim> &
     schedule() const

@@ -9,11 +9,11 @@ namespace Friction
   NodePattern::append_row(std::vector<unsigned int> &row_columns)
   {
     const unsigned int row = n_rows();
-    std::sort(row_columns.begin(), row_columns.end());
-    const auto diagonal =
-      std::find(row_columns.begin(), row_columns.end(), row);
-    if (diagonal != row_columns.end())
-      std::rotate(row_columns.begin(), diagonal, diagonal + 1);
+    std::sort(row_columns.begin(),
+              row_columns.end(),
+              [row](const unsigned int a, const unsigned int b) {
+                return is_before(row, a, b);
+              });
     columns.insert(columns.end(), row_columns.begin(), row_columns.end());
     starts.push_back(columns.size());
   }
@@ -37,10 +37,14 @@ namespace Friction
                              const unsigned int column) const
   {
     const std::size_t begin = row_starts[row], end = row_starts[row + 1];
-    if (begin == end || columns[begin] == column)
-      return begin;
-    const auto last = columns + end;
-    const auto it   = std::lower_bound(columns + begin + 1, last, column);
+    const auto        last = columns + end;
+    const auto        it =
+      std::lower_bound(columns + begin,
+                       last,
+                       column,
+                       [row](const unsigned int a, const unsigned int b) {
+                         return NodePattern::is_before(row, a, b);
+                       });
     return (it != last && *it == column) ? it - columns : end;
   }
 
@@ -66,25 +70,21 @@ namespace Friction
                                  const double *b,
                                  const double *x) const
   {
-    residual(r, b, x, 0, n_rows());
+    residual(r, b, x, {0, n_rows()});
   }
 
 
 
   template <int dim>
   void
-  NodeBlockMatrix<dim>::residual(double            *r,
-                                 const double      *b,
-                                 const double      *x,
-                                 const unsigned int begin,
-                                 const unsigned int end) const
+  NodeBlockMatrix<dim>::residual(double         *r,
+                                 const double   *b,
+                                 const double   *x,
+                                 const RowRange &rows,
+                                 const RowRange &ahead) const
   {
-    for (unsigned int i = begin; i < end; ++i)
-      {
-        const NodeValue<dim> value = row_times(i, x);
-        for (int d = 0; d < dim; ++d)
-          r[dim * i + d] = b[dim * i + d] - value[d];
-      }
+    Prefetch fetch = prefetch(ahead, rows.second - rows.first);
+    RowKernels::residual<dim>(this->rows(), rows, r, b, x, fetch);
   }
 
 

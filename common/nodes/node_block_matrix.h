@@ -1,18 +1,23 @@
 #ifndef friction_nodes_node_block_matrix_h
 #define friction_nodes_node_block_matrix_h
 
+#include <common/nodes/huge_pages.h>
 #include <common/nodes/node_block.h>
+#include <common/nodes/row_kernels.h>
 
 #include <cstddef>
 #include <memory>
-#include <utility>
 #include <vector>
 
 namespace Friction
 {
   /**
-   * Which blocks a matrix has, in compressed row storage: the columns of each
-   * row, the diagonal first and the others ascending.
+   * Which blocks a matrix has, in compressed row storage. The columns of row i
+   * are in the order i, i+1, ..., and from the last one on to 0, 1, ..., i-1:
+   * the diagonal comes first. Going through the rows in ascending order, each
+   * from front to back, one meets last the columns of those rows that one has
+   * just been to; in descending order, each from back to front, as well (but
+   * for the diagonal).
    */
   struct NodePattern
   {
@@ -23,6 +28,17 @@ namespace Friction
     n_rows() const
     {
       return starts.size() - 1;
+    }
+
+    /** Whether column @p a comes before column @p b in a row. An unsigned
+     * difference to the diagonal is small to its right, and huge to its left.
+     */
+    static bool
+    is_before(const unsigned int row,
+              const unsigned int a,
+              const unsigned int b)
+    {
+      return a - row < b - row;
     }
 
     /** Takes @p row_columns, which it sorts, as the columns of the next row. */
@@ -50,7 +66,7 @@ namespace Friction
    * nodes after them, as the local elements of
    * LinearAlgebra::distributed::Vector do, so that a vector enters as a plain
    * pointer to its local values, node by node. The first entry of each row is
-   * the diagonal block, the others follow by ascending column.
+   * the diagonal block, for the order of the others see NodePattern.
    */
   template <int dim>
   class NodeBlockMatrix
@@ -109,7 +125,18 @@ namespace Friction
     std::size_t find(const unsigned int row, const unsigned int column) const;
 
     /** The value of row @p row of the product A x. */
-    NodeValue<dim> row_times(const unsigned int row, const double *x) const;
+    NodeValue<dim>
+    row_times(const unsigned int row, const double *x) const
+    {
+      return RowKernels::times<dim>(rows(), row, x);
+    }
+
+    /** For RowKernels. */
+    BlockRows<dim>
+    rows() const
+    {
+      return {row_starts, columns, values.data()};
+    }
 
     /** Has the memory of a row brought closer, for use in the near future. */
     void
@@ -124,18 +151,30 @@ namespace Friction
       __builtin_prefetch(columns + row_starts[row]);
     }
 
+    /** The same for many rows, in @p n_steps steps. */
+    Prefetch
+    prefetch(const RowRange &rows, const unsigned int n_steps) const
+    {
+      return rows.first == rows.second
+        ? Prefetch()
+        : Prefetch(block(row_starts[rows.first]),
+                   block(row_starts[rows.second]),
+                   n_steps);
+    }
+
     /** y = A x. */
     void vmult(double *y, const double *x) const;
 
     /** r = b - A x. */
     void residual(double *r, const double *b, const double *x) const;
 
-    /** The same for the rows from begin to end-1 only. */
-    void residual(double            *r,
-                  const double      *b,
-                  const double      *x,
-                  const unsigned int begin,
-                  const unsigned int end) const;
+    /** The same for some rows only, and meanwhile has the rows @p ahead brought
+     * into the cache. */
+    void residual(double         *r,
+                  const double   *b,
+                  const double   *x,
+                  const RowRange &rows,
+                  const RowRange &ahead = {}) const;
 
     /** Memory in bytes. */
     std::size_t memory_consumption() const;
@@ -144,7 +183,7 @@ namespace Friction
     std::shared_ptr<const NodePattern> pattern;
     const std::size_t                 *row_starts = nullptr;
     const unsigned int                *columns    = nullptr;
-    std::vector<double>                values;
+    HugePageVector<double>             values;
   };
 
 
@@ -153,7 +192,7 @@ namespace Friction
    * Nodes to be relaxed, as ranges [first,second) of consecutive numbers: the
    * sweep then needs no test per node.
    */
-  using NodeRanges = std::vector<std::pair<unsigned int, unsigned int>>;
+  using NodeRanges = std::vector<RowRange>;
 
   /** Appends a node with a number larger than all before. */
   inline void
@@ -163,58 +202,6 @@ namespace Friction
       ++ranges.back().second;
     else
       ranges.emplace_back(node, node + 1);
-  }
-
-  // The innermost loop of everything, hence inline. The compiler's own vector
-  // type makes each column of a block one instruction in two dimensions; in
-  // three it takes two rows at once, and the third on its own. Each column has
-  // sums of its own: with a single one every addition would have to wait for
-  // the one before.
-  template <int dim>
-  inline DEAL_II_ALWAYS_INLINE NodeValue<dim>
-  NodeBlockMatrix<dim>::row_times(const unsigned int row, const double *x) const
-  {
-    const std::size_t   end = row_starts[row + 1];
-    const double       *a   = values.data() + row_starts[row] * (dim * dim);
-    const unsigned int *c   = columns;
-    NodeValue<dim>      y;
-    typedef double      Pair __attribute__((vector_size(16), aligned(8)));
-    if constexpr (dim == 2)
-      {
-        Pair sum0 = {0., 0.}, sum1 = {0., 0.};
-        for (std::size_t e = row_starts[row]; e < end; ++e, a += 4)
-          {
-            const double *xe = x + 2 * static_cast<std::size_t>(c[e]);
-            const Pair    x0 = {xe[0], xe[0]}, x1 = {xe[1], xe[1]};
-            sum0 += *reinterpret_cast<const Pair *>(a) * x0;
-            sum1 += *reinterpret_cast<const Pair *>(a + 2) * x1;
-          }
-        sum0 += sum1;
-        y[0] = sum0[0];
-        y[1] = sum0[1];
-      }
-    else
-      {
-        Pair   sum0 = {0., 0.}, sum1 = {0., 0.}, sum2 = {0., 0.};
-        double last0 = 0., last1 = 0., last2 = 0.;
-        for (std::size_t e = row_starts[row]; e < end; ++e, a += 9)
-          {
-            const double *xe = x + 3 * static_cast<std::size_t>(c[e]);
-            const Pair    x0 = {xe[0], xe[0]}, x1 = {xe[1], xe[1]},
-                       x2 = {xe[2], xe[2]};
-            sum0 += *reinterpret_cast<const Pair *>(a) * x0;
-            sum1 += *reinterpret_cast<const Pair *>(a + 3) * x1;
-            sum2 += *reinterpret_cast<const Pair *>(a + 6) * x2;
-            last0 += a[2] * xe[0];
-            last1 += a[5] * xe[1];
-            last2 += a[8] * xe[2];
-          }
-        sum0 += sum1 + sum2;
-        y[0] = sum0[0];
-        y[1] = sum0[1];
-        y[2] = last0 + last1 + last2;
-      }
-    return y;
   }
 } // namespace Friction
 

@@ -54,7 +54,9 @@ namespace Friction
      * Runs sweeps, and one more stage if @p with_residual is set, each over
      * all chunks in ascending or descending order. That last stage is anything
      * that reads neighbours and changes nothing.
-     * @param work    called as work(stage, chunk).
+     * @param work    called as work(stage, chunk, ahead). While it works on the
+     *                chunk it should have the rows @p ahead brought into the
+     *                cache: its share of what the first stage needs next.
      * @param ghosts  exchanges what the sweeps change.
      * @param x       which has to have valid ghosts, and has on return.
      */
@@ -72,7 +74,7 @@ namespace Friction
     }
 
     /** All nodes of a chunk, whether to be swept over or not. */
-    std::pair<unsigned int, unsigned int>
+    RowRange
     chunk(const unsigned int c) const
     {
       return {chunk_starts[c], chunk_starts[c + 1]};
@@ -131,6 +133,19 @@ namespace Friction
       return backwards ? n - 1 - reach_down[n - 1 - c] : reach_up[c];
     };
 
+    // The first stage waits for memory, the others find their rows in the
+    // cache. To spread the waiting over all of them, each fetches a part of a
+    // chunk that the first stage is to come to after the next one.
+    const auto ahead = [&](const unsigned int stage) -> RowRange {
+      const unsigned int next = done[0] + (stage == 0 ? 2 : 1);
+      if (next >= n)
+        return {0, 0};
+      const RowRange     rows = chunk(chunk_at(next));
+      const unsigned int size = rows.second - rows.first;
+      return {rows.first + size * stage / n_stages,
+              rows.first + size * (stage + 1) / n_stages};
+    };
+
     // A sweep is through with the interfaces after this many chunks.
     unsigned int through = 0;
     for (unsigned int c = 0; c < n; ++c)
@@ -160,7 +175,7 @@ namespace Friction
                 ghosts.finish(x);
                 ended = stage;
               }
-            work(stage, chunk_at(done[stage]));
+            work(stage, chunk_at(done[stage]), ahead(stage));
             ++done[stage];
             if (exchanges && stage < n_sweeps && done[stage] == through)
               {

@@ -16,6 +16,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <tests/benchmarks/bonded.h>
+#include <tests/benchmarks/machine.h>
 #include <tests/support/discretized.h>
 
 #include <algorithm>
@@ -27,37 +28,6 @@
 namespace Benchmark
 {
   using namespace Tests;
-
-  double
-  best_of(const unsigned int n, const std::function<void()> &work)
-  {
-    double best = 1e300;
-    for (unsigned int i = 0; i < n; ++i)
-      {
-        Timer timer;
-        work();
-        best = std::min(best, timer.wall_time());
-      }
-    return best;
-  }
-
-
-
-  // Bytes per second of a triad on vectors far larger than any cache.
-  double
-  triad_bandwidth()
-  {
-    const std::size_t   n = 20000000;
-    std::vector<double> a(n, 0.), b(n, 1.), c(n, 2.);
-    const double        seconds = best_of(5, [&]() {
-      for (std::size_t i = 0; i < n; ++i)
-        a[i] = b[i] + 3. * c[i];
-    });
-    // Read b and c, read and write a.
-    return 4. * n * sizeof(double) / seconds + (a[n / 2] < 0 ? 1. : 0.);
-  }
-
-
 
   double
   peak_memory()

@@ -1,0 +1,475 @@
+#include <common/nodes/row_kernels.h>
+
+#if defined(__x86_64__) && defined(__GNUC__)
+#  define FRICTION_AVX2 __attribute__((target("avx2,fma")))
+#endif
+
+namespace Friction
+{
+  namespace RowKernels
+  {
+    namespace
+    {
+      // Vectors as GCC and Clang understand them, in registers and in memory.
+      typedef double Pair __attribute__((vector_size(16)));
+      typedef double Quad __attribute__((vector_size(32)));
+      typedef Pair   PairInMemory __attribute__((aligned(8)));
+      typedef Quad   QuadInMemory __attribute__((aligned(8)));
+
+      inline DEAL_II_ALWAYS_INLINE Pair
+      pair(const double *numbers)
+      {
+        return *reinterpret_cast<const PairInMemory *>(numbers);
+      }
+
+      // Four sums; to each is added one of four numbers that follow each other
+      // in memory, times a factor. For processors that calculate with two
+      // numbers at a time,
+      struct TwoPairs
+      {
+        Pair lower = {0., 0.}, upper = {0., 0.};
+
+        // The same factor for all.
+        inline DEAL_II_ALWAYS_INLINE void
+        add(const double *a, const double x)
+        {
+          lower += pair(a) * Pair{x, x};
+          upper += pair(a + 2) * Pair{x, x};
+        }
+
+        // One for the first two, one for the other two.
+        inline DEAL_II_ALWAYS_INLINE void
+        add_columns(const double *a, const double *x)
+        {
+          lower += pair(a) * Pair{x[0], x[0]};
+          upper += pair(a + 2) * Pair{x[1], x[1]};
+        }
+
+        inline DEAL_II_ALWAYS_INLINE void
+        operator+=(const TwoPairs &other)
+        {
+          lower += other.lower;
+          upper += other.upper;
+        }
+
+        inline DEAL_II_ALWAYS_INLINE Pair
+        sum_of_halves() const
+        {
+          return lower + upper;
+        }
+
+        inline DEAL_II_ALWAYS_INLINE double
+        operator[](const unsigned int i) const
+        {
+          return i < 2 ? lower[i] : upper[i - 2];
+        }
+      };
+
+      // and with four. To be used in functions only that are compiled for such.
+      struct OneQuad
+      {
+        Quad all = {0., 0., 0., 0.};
+
+        inline DEAL_II_ALWAYS_INLINE void
+        add(const double *a, const double x)
+        {
+          all += *reinterpret_cast<const QuadInMemory *>(a) * Quad{x, x, x, x};
+        }
+
+        inline DEAL_II_ALWAYS_INLINE void
+        add_columns(const double *a, const double *x)
+        {
+          all += *reinterpret_cast<const QuadInMemory *>(a) *
+            __builtin_shufflevector(pair(x), pair(x), 0, 0, 1, 1);
+        }
+
+        inline DEAL_II_ALWAYS_INLINE void
+        operator+=(const OneQuad &other)
+        {
+          all += other.all;
+        }
+
+        inline DEAL_II_ALWAYS_INLINE Pair
+        sum_of_halves() const
+        {
+          return __builtin_shufflevector(all, all, 0, 1) +
+            __builtin_shufflevector(all, all, 2, 3);
+        }
+
+        inline DEAL_II_ALWAYS_INLINE double
+        operator[](const unsigned int i) const
+        {
+          return all[i];
+        }
+      };
+
+
+
+      // A sum of blocks times values. In two dimensions both columns of a block
+      // are one vector.
+      template <int dim, typename Four>
+      struct Sum
+      {
+        Four columns;
+
+        inline DEAL_II_ALWAYS_INLINE void
+        add(const double *block, const double *x)
+        {
+          columns.add_columns(block, x);
+        }
+
+        inline DEAL_II_ALWAYS_INLINE void
+        operator+=(const Sum &other)
+        {
+          columns += other.columns;
+        }
+
+        inline DEAL_II_ALWAYS_INLINE double
+        operator[](const unsigned int row) const
+        {
+          return columns[row] + columns[2 + row];
+        }
+      };
+
+      // In three dimensions a vector is a column and one number too many, which
+      // is calculated in vain: the next column's first for the first two, the
+      // one before it for the third, so that nothing outside of the block is
+      // touched. With four numbers stored per column it would be no faster, and
+      // there would be more to read.
+      template <typename Four>
+      struct Sum<3, Four>
+      {
+        Four first, second, third;
+
+        inline DEAL_II_ALWAYS_INLINE void
+        add(const double *block, const double *x)
+        {
+          first.add(block, x[0]);
+          second.add(block + 3, x[1]);
+          third.add(block + 5, x[2]);
+        }
+
+        inline DEAL_II_ALWAYS_INLINE void
+        operator+=(const Sum &other)
+        {
+          first += other.first;
+          second += other.second;
+          third += other.third;
+        }
+
+        inline DEAL_II_ALWAYS_INLINE double
+        operator[](const unsigned int row) const
+        {
+          return first[row] + second[row] + third[1 + row];
+        }
+      };
+
+
+
+      // Adds up n blocks times values, from position e of the matrix on. Two
+      // sums, so that an addition need not wait for the one before it.
+      template <int dim, typename Four>
+      inline DEAL_II_ALWAYS_INLINE void
+      add_blocks(Sum<dim, Four>      &sum,
+                 const unsigned int  *column,
+                 const double        *block,
+                 std::size_t          n,
+                 const std::ptrdiff_t step,
+                 const double        *x)
+      {
+        constexpr int  size = dim * dim;
+        Sum<dim, Four> other;
+        for (; n > 1; n -= 2)
+          {
+            sum.add(block, x + dim * static_cast<std::size_t>(column[0]));
+            other.add(block + size * step,
+                      x + dim * static_cast<std::size_t>(column[step]));
+            column += 2 * step;
+            block += 2 * size * step;
+          }
+        if (n > 0)
+          sum.add(block, x + dim * static_cast<std::size_t>(column[0]));
+        sum += other;
+      }
+
+
+
+      template <int dim, typename Four>
+      inline DEAL_II_ALWAYS_INLINE void
+      times_body(const BlockRows<dim> &A,
+                 const unsigned int    row,
+                 const double         *x,
+                 double               *product)
+      {
+        const std::size_t begin = A.starts[row], end = A.starts[row + 1];
+        Sum<dim, Four>    sum;
+        add_blocks<dim, Four>(sum,
+                              A.columns + begin,
+                              A.blocks + dim * dim * begin,
+                              end - begin,
+                              1,
+                              x);
+        for (int d = 0; d < dim; ++d)
+          product[d] = sum[d];
+      }
+
+
+
+      template <int dim, typename Four>
+      inline DEAL_II_ALWAYS_INLINE void
+      residual_body(const BlockRows<dim> &matrix,
+                    const RowRange       &rows,
+                    double               *r,
+                    const double         *b,
+                    const double         *x,
+                    Prefetch             &prefetch)
+      {
+        const BlockRows<dim> A     = matrix;
+        Prefetch             fetch = prefetch;
+        for (unsigned int i = rows.first; i < rows.second; ++i)
+          {
+            fetch.step();
+            double product[dim];
+            times_body<dim, Four>(A, i, x, product);
+            for (int d = 0; d < dim; ++d)
+              r[dim * i + d] = b[dim * i + d] - product[d];
+          }
+        prefetch = fetch;
+      }
+
+
+
+      // Rows are read from front to back or from back to front, like the
+      // matrix: processors foresee what is read next, as long as it goes on in
+      // one direction. In a row's order, see NodePattern, the node that has
+      // just been relaxed comes last in either direction; so the processor
+      // can begin with a row while it is not yet through with the one before.
+      //
+      // In two dimensions rows are so short that this is not enough. There the
+      // last block is multiplied by the inverse beforehand: from one relaxed
+      // node to the next there is then a single product instead of two, one
+      // after the other, and a sum.
+      template <int dim, typename Four, int step>
+      inline DEAL_II_ALWAYS_INLINE void
+      relax_body(const BlockRows<dim> &matrix,
+                 const NodeBlock<dim> *inverses,
+                 const RowRange       &rows,
+                 const double         *b,
+                 double               *x,
+                 Prefetch             &prefetch)
+      {
+        constexpr bool       backwards = (step < 0);
+        constexpr int        size      = dim * dim;
+        const BlockRows<dim> A         = matrix;
+        Prefetch             fetch     = prefetch;
+        std::size_t          i = backwards ? rows.second - 1 : rows.first;
+        for (unsigned int n = rows.second - rows.first; n > 0; --n, i += step)
+          {
+            fetch.step();
+            const std::size_t begin = A.starts[i], end = A.starts[i + 1];
+            if (begin == end)
+              continue;
+            double       *xi      = x + dim * i;
+            const double *bi      = b + dim * i;
+            const double *inverse = inverses[i].data();
+
+            // The others, but for the last one, and then the diagonal.
+            const std::size_t n_others = end - begin - 1;
+            const bool        has_last = (dim == 2 && n_others > 0);
+            const std::size_t first    = backwards ? end - 1 : begin + 1,
+                              last     = backwards ? begin + 1 : end - 1;
+            Sum<dim, Four> sum;
+            add_blocks<dim, Four>(sum,
+                                  A.columns + first,
+                                  A.blocks + size * first,
+                                  n_others - has_last,
+                                  step,
+                                  x);
+            sum.add(A.blocks + size * begin, xi);
+
+            if constexpr (dim == 2)
+              {
+                const Pair inverse0 = pair(inverse),
+                           inverse1 = pair(inverse + 2);
+                const Pair defect   = pair(bi) - sum.columns.sum_of_halves();
+                Pair       value    = pair(xi) +
+                  (inverse0 * Pair{defect[0], defect[0]} +
+                   inverse1 * Pair{defect[1], defect[1]});
+                if (has_last)
+                  {
+                    const double *block = A.blocks + size * last;
+                    const Pair column0  = inverse0 * Pair{block[0], block[0]} +
+                      inverse1 * Pair{block[1], block[1]};
+                    const Pair column1 = inverse0 * Pair{block[2], block[2]} +
+                      inverse1 * Pair{block[3], block[3]};
+                    const Pair other =
+                      pair(x + dim * static_cast<std::size_t>(A.columns[last]));
+                    value = (value - column0 * Pair{other[0], other[0]}) -
+                      column1 * Pair{other[1], other[1]};
+                  }
+                *reinterpret_cast<PairInMemory *>(xi) = value;
+              }
+            else
+              {
+                double defect[dim];
+                for (int d = 0; d < dim; ++d)
+                  defect[d] = bi[d] - sum[d];
+                Sum<dim, Four> correction;
+                correction.add(inverse, defect);
+                for (int d = 0; d < dim; ++d)
+                  xi[d] += correction[d];
+              }
+          }
+        prefetch = fetch;
+      }
+
+
+
+      Instructions in_use = available_instructions().back();
+
+
+
+#ifdef FRICTION_AVX2
+      // What is inlined into a function is compiled for the same instructions
+      // as that function. The functions called in these are all inlined.
+      template <int dim>
+      FRICTION_AVX2 void
+      times_avx2(const BlockRows<dim> &A,
+                 const unsigned int    row,
+                 const double         *x,
+                 double               *product)
+      {
+        times_body<dim, OneQuad>(A, row, x, product);
+      }
+
+      template <int dim>
+      FRICTION_AVX2 void
+      residual_avx2(const BlockRows<dim> &A,
+                    const RowRange       &rows,
+                    double               *r,
+                    const double         *b,
+                    const double         *x,
+                    Prefetch             &prefetch)
+      {
+        residual_body<dim, OneQuad>(A, rows, r, b, x, prefetch);
+      }
+
+      template <int dim>
+      FRICTION_AVX2 void
+      relax_avx2(const BlockRows<dim> &A,
+                 const NodeBlock<dim> *inverses,
+                 const RowRange       &rows,
+                 const bool            backwards,
+                 const double         *b,
+                 double               *x,
+                 Prefetch             &prefetch)
+      {
+        if (backwards)
+          relax_body<dim, OneQuad, -1>(A, inverses, rows, b, x, prefetch);
+        else
+          relax_body<dim, OneQuad, 1>(A, inverses, rows, b, x, prefetch);
+      }
+#endif
+    } // namespace
+
+
+
+    std::vector<Instructions>
+    available_instructions()
+    {
+      std::vector<Instructions> available = {Instructions::common};
+#ifdef FRICTION_AVX2
+      __builtin_cpu_init();
+      if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+        available.push_back(Instructions::avx2);
+#endif
+      return available;
+    }
+
+
+
+    void
+    use(const Instructions instructions)
+    {
+      in_use = instructions;
+    }
+
+
+
+    template <int dim>
+    NodeValue<dim>
+    times(const BlockRows<dim> &A, const unsigned int row, const double *x)
+    {
+      NodeValue<dim> product;
+#ifdef FRICTION_AVX2
+      if (in_use == Instructions::avx2)
+        times_avx2<dim>(A, row, x, product.data());
+      else
+#endif
+        times_body<dim, TwoPairs>(A, row, x, product.data());
+      return product;
+    }
+
+
+
+    template <int dim>
+    void
+    residual(const BlockRows<dim> &A,
+             const RowRange       &rows,
+             double               *r,
+             const double         *b,
+             const double         *x,
+             Prefetch             &prefetch)
+    {
+#ifdef FRICTION_AVX2
+      if (in_use == Instructions::avx2)
+        return residual_avx2<dim>(A, rows, r, b, x, prefetch);
+#endif
+      residual_body<dim, TwoPairs>(A, rows, r, b, x, prefetch);
+    }
+
+
+
+    template <int dim>
+    void
+    relax(const BlockRows<dim> &A,
+          const NodeBlock<dim> *inverses,
+          const RowRange       &rows,
+          const bool            backwards,
+          const double         *b,
+          double               *x,
+          Prefetch             &prefetch)
+    {
+#ifdef FRICTION_AVX2
+      if (in_use == Instructions::avx2)
+        return relax_avx2<dim>(A, inverses, rows, backwards, b, x, prefetch);
+#endif
+      if (backwards)
+        relax_body<dim, TwoPairs, -1>(A, inverses, rows, b, x, prefetch);
+      else
+        relax_body<dim, TwoPairs, 1>(A, inverses, rows, b, x, prefetch);
+    }
+
+
+
+#define FRICTION_INSTANTIATE(dim)                                \
+  template NodeValue<dim> times<dim>(                            \
+    const BlockRows<dim> &, const unsigned int, const double *); \
+  template void residual<dim>(const BlockRows<dim> &,            \
+                              const RowRange &,                  \
+                              double *,                          \
+                              const double *,                    \
+                              const double *,                    \
+                              Prefetch &);                       \
+  template void relax<dim>(const BlockRows<dim> &,               \
+                           const NodeBlock<dim> *,               \
+                           const RowRange &,                     \
+                           const bool,                           \
+                           const double *,                       \
+                           double *,                             \
+                           Prefetch &);
+    FRICTION_INSTANTIATE(2)
+    FRICTION_INSTANTIATE(3)
+#undef FRICTION_INSTANTIATE
+  } // namespace RowKernels
+} // namespace Friction

@@ -1,0 +1,115 @@
+#ifndef friction_nodes_row_kernels_h
+#define friction_nodes_row_kernels_h
+
+#include <common/nodes/node_block.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace Friction
+{
+  /** Rows first, ..., second-1 of a matrix. */
+  using RowRange = std::pair<unsigned int, unsigned int>;
+
+  /** The rows of a NodeBlockMatrix, as its innermost loops see them. */
+  template <int dim>
+  struct BlockRows
+  {
+    const std::size_t  *starts;
+    const unsigned int *columns;
+    const double       *blocks;
+  };
+
+
+
+  /**
+   * Has memory brought into the cache before it is read, a little with each
+   * step of a loop that does something else meanwhile. All at once would be
+   * more than a processor can wait for at a time.
+   */
+  class Prefetch
+  {
+  public:
+    Prefetch() = default;
+
+    /** The memory from @p begin to @p end, in @p n_steps steps. */
+    Prefetch(const void *begin, const void *end, const unsigned int n_steps)
+      : next(static_cast<const char *>(begin))
+      , end(static_cast<const char *>(end))
+      , bytes_per_step(
+          ((this->end - next) / (line * std::max(1u, n_steps)) + 1) * line)
+    {}
+
+    void
+    step()
+    {
+      const char *stop = next + std::min(bytes_per_step, end - next);
+      for (; next < stop; next += line)
+        __builtin_prefetch(next, /*for writing*/ 0, /*not into the first*/ 2);
+      next = stop;
+    }
+
+  private:
+    static constexpr std::ptrdiff_t line = 64;
+
+    const char    *next = nullptr, *end = nullptr;
+    std::ptrdiff_t bytes_per_step = 0;
+  };
+
+
+
+  /**
+   * The three loops that a solution spends its time in, compiled several times,
+   * each for processors with other instructions. Which of them is run is found
+   * out when the program starts, so that a program that is made for all
+   * processors of a kind is as fast as one made for this one. Results differ in
+   * rounding.
+   */
+  namespace RowKernels
+  {
+    enum class Instructions
+    {
+      common, ///< what every processor of this kind has
+      avx2    ///< x86-64: four numbers at a time, product and sum in one
+    };
+
+    /** What this processor has, in ascending order of speed. */
+    std::vector<Instructions> available_instructions();
+
+    /** Chooses among available_instructions(), the last of which are those to
+     * begin with. For tests and measurements. */
+    void use(const Instructions instructions);
+
+    /** The value of row @p row of the product A x. */
+    template <int dim>
+    NodeValue<dim>
+    times(const BlockRows<dim> &A, const unsigned int row, const double *x);
+
+    /** r = b - A x for some rows. */
+    template <int dim>
+    void residual(const BlockRows<dim> &A,
+                  const RowRange       &rows,
+                  double               *r,
+                  const double         *b,
+                  const double         *x,
+                  Prefetch             &prefetch);
+
+    /**
+     * Gauss-Seidel for some rows, ascending or descending: solves the equations
+     * of each row for the values of its node.
+     * @param inverses  of the diagonal blocks, for all rows of the matrix.
+     */
+    template <int dim>
+    void relax(const BlockRows<dim> &A,
+               const NodeBlock<dim> *inverses,
+               const RowRange       &rows,
+               const bool            backwards,
+               const double         *b,
+               double               *x,
+               Prefetch             &prefetch);
+  } // namespace RowKernels
+} // namespace Friction
+
+#endif

@@ -1,0 +1,243 @@
+// The kernels do what a plain loop does, up to rounding: products, residuals
+// and Gauss-Seidel sweeps in either direction, with each kind of instructions
+// that the processor has; on meshes with hanging nodes, whose rows are empty
+// and whose neighbours have rows of all lengths, and for rows with no block,
+// with one, two, and so on. They read nothing outside of the matrix and the
+// vectors, and write nothing but the rows that they were told to (the former is
+// for the address sanitizer to say).
+//
+// The memory that is asked for in large pages is like any other.
+
+#include <common/nodes/gauss_seidel.h>
+#include <common/nodes/node_block_matrix.h>
+
+#include <iostream>
+
+#include <tests/support/check.h>
+#include <tests/support/random_problem.h>
+
+using namespace Tests;
+
+namespace
+{
+  // One entry after the other, in the order of the columns.
+  template <int dim>
+  std::vector<double>
+  plain_product(const NodeBlockMatrix<dim> &A,
+                const unsigned int          row,
+                const std::vector<double>  &x)
+  {
+    std::vector<double> product(dim, 0.);
+    for (unsigned int j = 0; j < x.size() / dim; ++j)
+      if (const std::size_t e = A.find(row, j); e != A.row_end(row))
+        for (unsigned int r = 0; r < dim; ++r)
+          for (unsigned int c = 0; c < dim; ++c)
+            product[r] += A.block(e)[c * dim + r] * x[dim * j + c];
+    return product;
+  }
+
+
+
+  template <int dim>
+  void
+  plain_relaxation(const NodeBlockMatrix<dim>        &A,
+                   const std::vector<NodeBlock<dim>> &inverses,
+                   const unsigned int                 row,
+                   const std::vector<double>         &b,
+                   std::vector<double>               &x)
+  {
+    const std::vector<double> product = plain_product(A, row, x);
+    for (unsigned int r = 0; r < dim; ++r)
+      for (unsigned int c = 0; c < dim; ++c)
+        x[dim * row + r] +=
+          inverses[row][c * dim + r] * (b[dim * row + c] - product[c]);
+  }
+
+
+
+  double
+  relative_difference(const std::vector<double> &a,
+                      const std::vector<double> &b)
+  {
+    double difference = 0, largest = 0;
+    for (unsigned int i = 0; i < a.size(); ++i)
+      {
+        difference = std::max(difference, std::abs(a[i] - b[i]));
+        largest    = std::max(largest, std::abs(a[i]));
+      }
+    return difference / largest;
+  }
+
+
+
+  std::vector<double>
+  random_vector(const unsigned int n, Random &random)
+  {
+    std::vector<double> result(n);
+    for (double &value : result)
+      value = random(-1., 1.);
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  test(const NodeBlockMatrix<dim> &A, const NodeRanges &nodes, Random &random)
+  {
+    const unsigned int          n = A.n_rows();
+    std::vector<NodeBlock<dim>> inverses(n, zero_block<dim>());
+    for (unsigned int i = 0; i < n; ++i)
+      if (A.row_begin(i) < A.row_end(i))
+        {
+          NodeBlock<dim> block;
+          std::copy_n(A.block(A.row_begin(i)), dim * dim, block.begin());
+          inverses[i] =
+            pseudo_inverse<dim>(block, 1e-10 * trace<dim>(block.data()));
+        }
+    const GaussSeidel<dim>    relaxation(A, inverses, nodes, 16);
+    GhostExchange             no_ghosts;
+    const std::vector<double> b     = random_vector(dim * n, random),
+                              start = random_vector(dim * n, random);
+
+    double product_error = 0, residual_error = 0, sweep_error = 0;
+    for (const auto instructions : RowKernels::available_instructions())
+      {
+        RowKernels::use(instructions);
+        std::vector<double> Ax(dim * n), r(dim * n), expected(dim * n);
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            const std::vector<double> product = plain_product(A, i, start);
+            std::copy_n(product.begin(), dim, &expected[dim * i]);
+          }
+        A.vmult(Ax.data(), start.data());
+        product_error =
+          std::max(product_error, relative_difference(expected, Ax));
+        A.residual(r.data(), b.data(), start.data());
+        for (unsigned int i = 0; i < dim * n; ++i)
+          expected[i] = b[i] - expected[i];
+        residual_error =
+          std::max(residual_error, relative_difference(expected, r));
+
+        for (const bool backwards : {false, true})
+          {
+            std::vector<double> x = start, plain = start;
+            for (unsigned int sweep = 0; sweep < 3; ++sweep)
+              for (unsigned int k = 0; k < nodes.size(); ++k)
+                {
+                  const RowRange range =
+                    nodes[backwards ? nodes.size() - 1 - k : k];
+                  for (unsigned int i = 0; i < range.second - range.first; ++i)
+                    plain_relaxation(A,
+                                     inverses,
+                                     backwards ? range.second - 1 - i
+                                               : range.first + i,
+                                     b,
+                                     plain);
+                }
+            relaxation.run(
+              {3, backwards}, b.data(), x.data(), no_ghosts, r.data());
+            for (unsigned int i = 0; i < n; ++i)
+              {
+                const std::vector<double> product = plain_product(A, i, plain);
+                for (unsigned int d = 0; d < dim; ++d)
+                  expected[dim * i + d] = b[dim * i + d] - product[d];
+              }
+            sweep_error = std::max({sweep_error,
+                                    relative_difference(plain, x),
+                                    relative_difference(expected, r)});
+          }
+      }
+    check_below(product_error, 1e-13, "products");
+    check_below(residual_error, 1e-13, "residuals");
+    check_below(sweep_error, 1e-13, "sweeps, and residuals after them");
+  }
+
+
+
+  template <int dim>
+  void
+  test_hanging_nodes()
+  {
+    std::cout << dim << "D, hanging nodes" << std::endl;
+    Random                   random(1);
+    const RandomProblem<dim> problem(
+      block_parameters<dim>(FrictionLaw::none, 0.), 3, .3, random);
+    check(problem.n_hanging() > 0, "there are such");
+    test(problem.matrix(), {{0, problem.matrix().n_rows()}}, random);
+  }
+
+
+
+  // Row i couples to some of the next i%12 nodes, unless it is empty, and these
+  // to it.
+  template <int dim>
+  void
+  test_lengths()
+  {
+    std::cout << dim << "D, rows of all lengths" << std::endl;
+    Random                                 random(2);
+    const unsigned int                     n = 100;
+    std::vector<std::vector<unsigned int>> columns(n);
+    for (unsigned int i = 0; i < n; ++i)
+      if (i % 7 != 3)
+        {
+          columns[i].push_back(i);
+          for (unsigned int j = i + 1; j < std::min(n, i + i % 12); ++j)
+            if (j % 7 != 3 && random.chance(.7))
+              {
+                columns[i].push_back(j);
+                columns[j].push_back(i);
+              }
+        }
+    auto                  pattern = std::make_shared<NodePattern>();
+    std::vector<unsigned> lengths(12, 0);
+    for (auto &row : columns)
+      {
+        ++lengths[std::min<std::size_t>(row.size(), lengths.size() - 1)];
+        pattern->append_row(row);
+      }
+    check(*std::min_element(lengths.begin(), lengths.begin() + 8) > 0,
+          "from 0 to 7 blocks");
+    NodeBlockMatrix<dim> A(pattern);
+    for (unsigned int i = 0; i < n; ++i)
+      for (std::size_t e = A.row_begin(i); e < A.row_end(i); ++e)
+        for (unsigned int c = 0; c < dim; ++c)
+          for (unsigned int r = 0; r < dim; ++r)
+            A.block(e)[c * dim + r] =
+              random(-1., 1.) + (A.column(e) == i && c == r ? 40. * dim : 0.);
+    test(A, {{0, 1}, {2, 30}, {31, 33}, {40, 99}}, random);
+  }
+
+
+
+  void
+  test_huge_pages()
+  {
+    std::cout << "large pages" << std::endl;
+    bool zero = true;
+    for (const std::size_t n : {0, 1, 1000, 262143, 262144, 1000000})
+      {
+        HugePageVector<double> v(n, 0.);
+        for (const double x : v)
+          zero = zero && x == 0.;
+        v.push_back(1.);
+        HugePageVector<double> w = v;
+        v.clear();
+        v.shrink_to_fit();
+        zero = zero && w.size() == n + 1 && w.back() == 1. && v.empty();
+      }
+    check(zero, "vectors of all sizes");
+  }
+} // namespace
+
+int
+main(int argc, char **argv)
+{
+  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  test_hanging_nodes<2>();
+  test_hanging_nodes<3>();
+  test_lengths<2>();
+  test_lengths<3>();
+  test_huge_pages();
+}
