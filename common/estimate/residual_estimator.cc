@@ -154,7 +154,7 @@ namespace Friction
           for (unsigned int d = 0; d < dim; ++d)
             unit_gradients[d] = cross_product_3d(tangents[(d + 1) % dim],
                                                  tangents[(d + 2) % dim]);
-        determinant = unit_gradients[0] * tangents[0];
+        determinant        = unit_gradients[0] * tangents[0];
         const double scale = 1. / determinant;
         for (unsigned int d = 0; d < dim; ++d)
           unit_gradients[d] *= scale;

@@ -139,6 +139,7 @@ namespace Friction
    * A hanging face is integrated over its smaller parts and shared by
    * the cells on both sides, like every other interior face.
    *
+   * @param mapping      of degree 1: cells have straight edges.
    * @param displacement with ghost values and hanging nodes interpolated.
    */
   template <int dim>

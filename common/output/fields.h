@@ -32,6 +32,7 @@ namespace Friction
   template <int dim>
   struct LevelFields
   {
+    /// Of degree 1.
     const dealii::Mapping<dim>              &mapping;
     const dealii::DoFHandler<dim>           &dof_handler;
     const dealii::AffineConstraints<double> &hanging_nodes;
