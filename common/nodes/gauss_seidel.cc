@@ -54,13 +54,12 @@ namespace Friction
     const RowRange        all     = sweep_schedule.chunk(chunk);
     Prefetch              fetch   = A->prefetch(ahead, all.second - all.first);
     for (unsigned int k = 0; k < nodes.size(); ++k)
-      RowKernels::relax<dim>(rows,
-                             inverse,
-                             nodes[backwards ? nodes.size() - 1 - k : k],
-                             backwards,
-                             b,
-                             x,
-                             fetch);
+      RowKernels::relax<dim>(
+        rows,
+        inverse,
+        {nodes[backwards ? nodes.size() - 1 - k : k], backwards, fetch},
+        b,
+        x);
   }
 
 

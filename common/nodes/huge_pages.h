@@ -2,7 +2,6 @@
 #define friction_nodes_huge_pages_h
 
 #include <cstddef>
-#include <cstdlib>
 #include <new>
 #include <vector>
 
@@ -37,21 +36,23 @@ namespace Friction
     allocate(const std::size_t n)
     {
       const std::size_t bytes = n * sizeof(T);
-      void             *memory;
-      if (posix_memalign(&memory, bytes < page ? 64 : page, bytes) != 0)
-        throw std::bad_alloc();
+      if (bytes < page)
+        return static_cast<T *>(::operator new(bytes));
+      void *memory = ::operator new(bytes, std::align_val_t(page));
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
       // A wish: whether it is granted makes no difference but in speed.
-      if (bytes >= page)
-        madvise(memory, bytes / page * page, MADV_HUGEPAGE);
+      madvise(memory, bytes / page * page, MADV_HUGEPAGE);
 #endif
       return static_cast<T *>(memory);
     }
 
     void
-    deallocate(T *memory, const std::size_t)
+    deallocate(T *memory, const std::size_t n)
     {
-      std::free(memory);
+      if (n * sizeof(T) < page)
+        ::operator delete(memory);
+      else
+        ::operator delete(memory, std::align_val_t(page));
     }
 
     template <typename U>

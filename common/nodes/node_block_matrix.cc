@@ -84,7 +84,7 @@ namespace Friction
                                  const RowRange &ahead) const
   {
     Prefetch fetch = prefetch(ahead, rows.second - rows.first);
-    RowKernels::residual<dim>(this->rows(), rows, r, b, x, fetch);
+    RowKernels::residual<dim>(this->rows(), {rows, false, fetch}, r, b, x);
   }
 
 

@@ -218,14 +218,14 @@ namespace Friction
       template <int dim, typename Four>
       inline DEAL_II_ALWAYS_INLINE void
       residual_body(const BlockRows<dim> &matrix,
-                    const RowRange       &rows,
+                    const RowLoop        &loop,
                     double               *r,
                     const double         *b,
-                    const double         *x,
-                    Prefetch             &prefetch)
+                    const double         *x)
       {
         const BlockRows<dim> A     = matrix;
-        Prefetch             fetch = prefetch;
+        const RowRange       rows  = loop.rows;
+        Prefetch             fetch = loop.prefetch;
         for (unsigned int i = rows.first; i < rows.second; ++i)
           {
             fetch.step();
@@ -234,7 +234,7 @@ namespace Friction
             for (int d = 0; d < dim; ++d)
               r[dim * i + d] = b[dim * i + d] - product[d];
           }
-        prefetch = fetch;
+        loop.prefetch = fetch;
       }
 
 
@@ -253,15 +253,15 @@ namespace Friction
       inline DEAL_II_ALWAYS_INLINE void
       relax_body(const BlockRows<dim> &matrix,
                  const NodeBlock<dim> *inverses,
-                 const RowRange       &rows,
+                 const RowLoop        &loop,
                  const double         *b,
-                 double               *x,
-                 Prefetch             &prefetch)
+                 double               *x)
       {
         constexpr bool       backwards = (step < 0);
         constexpr int        size      = dim * dim;
         const BlockRows<dim> A         = matrix;
-        Prefetch             fetch     = prefetch;
+        const RowRange       rows      = loop.rows;
+        Prefetch             fetch     = loop.prefetch;
         std::size_t          i = backwards ? rows.second - 1 : rows.first;
         for (unsigned int n = rows.second - rows.first; n > 0; --n, i += step)
           {
@@ -320,7 +320,7 @@ namespace Friction
                   xi[d] += correction[d];
               }
           }
-        prefetch = fetch;
+        loop.prefetch = fetch;
       }
 
 
@@ -345,29 +345,26 @@ namespace Friction
       template <int dim>
       FRICTION_AVX2 void
       residual_avx2(const BlockRows<dim> &A,
-                    const RowRange       &rows,
+                    const RowLoop        &loop,
                     double               *r,
                     const double         *b,
-                    const double         *x,
-                    Prefetch             &prefetch)
+                    const double         *x)
       {
-        residual_body<dim, OneQuad>(A, rows, r, b, x, prefetch);
+        residual_body<dim, OneQuad>(A, loop, r, b, x);
       }
 
       template <int dim>
       FRICTION_AVX2 void
       relax_avx2(const BlockRows<dim> &A,
                  const NodeBlock<dim> *inverses,
-                 const RowRange       &rows,
-                 const bool            backwards,
+                 const RowLoop        &loop,
                  const double         *b,
-                 double               *x,
-                 Prefetch             &prefetch)
+                 double               *x)
       {
-        if (backwards)
-          relax_body<dim, OneQuad, -1>(A, inverses, rows, b, x, prefetch);
+        if (loop.backwards)
+          relax_body<dim, OneQuad, -1>(A, inverses, loop, b, x);
         else
-          relax_body<dim, OneQuad, 1>(A, inverses, rows, b, x, prefetch);
+          relax_body<dim, OneQuad, 1>(A, inverses, loop, b, x);
       }
 #endif
     } // namespace
@@ -415,17 +412,16 @@ namespace Friction
     template <int dim>
     void
     residual(const BlockRows<dim> &A,
-             const RowRange       &rows,
+             const RowLoop        &loop,
              double               *r,
              const double         *b,
-             const double         *x,
-             Prefetch             &prefetch)
+             const double         *x)
     {
 #ifdef FRICTION_AVX2
       if (in_use == Instructions::avx2)
-        return residual_avx2<dim>(A, rows, r, b, x, prefetch);
+        return residual_avx2<dim>(A, loop, r, b, x);
 #endif
-      residual_body<dim, TwoPairs>(A, rows, r, b, x, prefetch);
+      residual_body<dim, TwoPairs>(A, loop, r, b, x);
     }
 
 
@@ -434,42 +430,45 @@ namespace Friction
     void
     relax(const BlockRows<dim> &A,
           const NodeBlock<dim> *inverses,
-          const RowRange       &rows,
-          const bool            backwards,
+          const RowLoop        &loop,
           const double         *b,
-          double               *x,
-          Prefetch             &prefetch)
+          double               *x)
     {
 #ifdef FRICTION_AVX2
       if (in_use == Instructions::avx2)
-        return relax_avx2<dim>(A, inverses, rows, backwards, b, x, prefetch);
+        return relax_avx2<dim>(A, inverses, loop, b, x);
 #endif
-      if (backwards)
-        relax_body<dim, TwoPairs, -1>(A, inverses, rows, b, x, prefetch);
+      if (loop.backwards)
+        relax_body<dim, TwoPairs, -1>(A, inverses, loop, b, x);
       else
-        relax_body<dim, TwoPairs, 1>(A, inverses, rows, b, x, prefetch);
+        relax_body<dim, TwoPairs, 1>(A, inverses, loop, b, x);
     }
 
 
 
-#define FRICTION_INSTANTIATE(dim)                                \
-  template NodeValue<dim> times<dim>(                            \
-    const BlockRows<dim> &, const unsigned int, const double *); \
-  template void residual<dim>(const BlockRows<dim> &,            \
-                              const RowRange &,                  \
-                              double *,                          \
-                              const double *,                    \
-                              const double *,                    \
-                              Prefetch &);                       \
-  template void relax<dim>(const BlockRows<dim> &,               \
-                           const NodeBlock<dim> *,               \
-                           const RowRange &,                     \
-                           const bool,                           \
-                           const double *,                       \
-                           double *,                             \
-                           Prefetch &);
-    FRICTION_INSTANTIATE(2)
-    FRICTION_INSTANTIATE(3)
-#undef FRICTION_INSTANTIATE
+    template NodeValue<2>
+    times<2>(const BlockRows<2> &, const unsigned int, const double *);
+    template void residual<2>(const BlockRows<2> &,
+                              const RowLoop &,
+                              double *,
+                              const double *,
+                              const double *);
+    template void relax<2>(const BlockRows<2> &,
+                           const NodeBlock<2> *,
+                           const RowLoop &,
+                           const double *,
+                           double *);
+    template NodeValue<3>
+    times<3>(const BlockRows<3> &, const unsigned int, const double *);
+    template void residual<3>(const BlockRows<3> &,
+                              const RowLoop &,
+                              double *,
+                              const double *,
+                              const double *);
+    template void relax<3>(const BlockRows<3> &,
+                           const NodeBlock<3> *,
+                           const RowLoop &,
+                           const double *,
+                           double *);
   } // namespace RowKernels
 } // namespace Friction

@@ -82,33 +82,39 @@ namespace Friction
      * begin with. For tests and measurements. */
     void use(const Instructions instructions);
 
+    /** The rows that a kernel goes through, in which direction, and what it has
+     * brought into the cache meanwhile. */
+    struct RowLoop
+    {
+      RowRange  rows;
+      bool      backwards;
+      Prefetch &prefetch;
+    };
+
     /** The value of row @p row of the product A x. */
     template <int dim>
     NodeValue<dim>
     times(const BlockRows<dim> &A, const unsigned int row, const double *x);
 
-    /** r = b - A x for some rows. */
+    /** r = b - A x for some rows, forwards in any case. */
     template <int dim>
     void residual(const BlockRows<dim> &A,
-                  const RowRange       &rows,
+                  const RowLoop        &loop,
                   double               *r,
                   const double         *b,
-                  const double         *x,
-                  Prefetch             &prefetch);
+                  const double         *x);
 
     /**
-     * Gauss-Seidel for some rows, ascending or descending: solves the equations
-     * of each row for the values of its node.
+     * Gauss-Seidel for some rows: solves the equations of each row for the
+     * values of its node.
      * @param inverses  of the diagonal blocks, for all rows of the matrix.
      */
     template <int dim>
     void relax(const BlockRows<dim> &A,
                const NodeBlock<dim> *inverses,
-               const RowRange       &rows,
-               const bool            backwards,
+               const RowLoop        &loop,
                const double         *b,
-               double               *x,
-               Prefetch             &prefetch);
+               double               *x);
   } // namespace RowKernels
 } // namespace Friction
 
