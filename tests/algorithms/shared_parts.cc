@@ -64,7 +64,7 @@ namespace
     std::size_t      before = allocated;
     ContactSolver<2> solver(nest.discretization(), nest.parameters().solver);
     const double     construction = allocated - before;
-    check(construction > 3e5, "a solver takes 300 kB or more");
+    check(construction > 1e5, "a solver takes 100 kB or more");
 
     before                    = allocated;
     const SolverReport report = solver.solve(u, state);
