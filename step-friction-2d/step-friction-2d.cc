@@ -156,8 +156,9 @@ namespace StepFriction2d
     if (start == Start::from_checkpoint)
       {
         level = output.load_checkpoint(*triangulation);
-        stop.add_estimate(output.last_level().estimated_error,
-                          output.last_level().dofs);
+        for (const LevelRecord &record : output.levels())
+          stop.add_level(
+            record.estimated_error, record.dofs, record.contraction);
       }
     else
       refine_uniformly(*triangulation,
@@ -465,7 +466,7 @@ namespace StepFriction2d
             estimate_contact_error(discretization, displacement, tractions);
         stop.add_level(estimate.total,
                        discretization.dof_handler().n_dofs(),
-                       report);
+                       report.contraction);
         record_level(level, estimate);
 
         // A level without a certified solution is the end: what is wrong on

@@ -56,8 +56,9 @@ namespace StepFriction3d
         nest.begin_on_level(output.load_checkpoint(nest.mesh()));
         Checkpoints::load_vectors(nest.discretization().dof_handler(),
                                   nest.guess());
-        nest.add_estimate(output.last_level().estimated_error,
-                          output.last_level().dofs);
+        for (const LevelRecord &record : output.levels())
+          nest.add_level(
+            record.estimated_error, record.dofs, record.contraction);
       }
     output.check_start(nest.discretization());
   }

@@ -47,29 +47,19 @@ namespace Friction
 
 
 
-  template <int dim>
-  void
-  DiscretizationStop<dim>::add_estimate(
-    const double estimated_error, const dealii::types::global_dof_index n_dofs)
-  {
-    error       = estimated_error / overestimation;
-    n_dofs_then = n_dofs;
-  }
-
-
-
-  // The first mesh begins with nothing, which says little about those that
-  // begin with what a coarser one has found.
+  // The first mesh begins with nothing, which says little about those that begin
+  // with what a coarser one has found.
   template <int dim>
   void
   DiscretizationStop<dim>::add_level(
     const double                          estimated_error,
     const dealii::types::global_dof_index n_dofs,
-    const SolverReport                   &report)
+    const double                          contraction)
   {
-    if (error > 0 && report.cycles.size() > 1 && report.cycles[0].increment > 0)
-      pace = report.cycles[1].increment / report.cycles[0].increment;
-    add_estimate(estimated_error, n_dofs);
+    if (n_dofs_then > 0 && contraction > 0)
+      pace = contraction;
+    error       = estimated_error / overestimation;
+    n_dofs_then = n_dofs;
   }
 
 

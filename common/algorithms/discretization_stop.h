@@ -1,7 +1,6 @@
 #ifndef friction_algorithms_discretization_stop_h
 #define friction_algorithms_discretization_stop_h
 
-#include <common/algorithms/solver_report.h>
 #include <common/parameters/solver_settings.h>
 
 #include <deal.II/base/types.h>
@@ -20,9 +19,9 @@ namespace Friction
    * taken, scaled by the rate at which errors fall with the number of unknowns,
    * $N^{-1/d}$, and halved, since the first meshes may do better than that.
    *
-   * Two increments say how large the error of the iteration is. If the mesh
-   * before has had two, their ratio is what is expected of the next one, too,
-   * and one cycle may be enough there.
+   * Two increments say how large the error of the iteration is. Where a mesh has
+   * taken as many cycles, their contraction is what is expected of the next
+   * meshes, and there one cycle may be enough.
    */
   template <int dim>
   class DiscretizationStop
@@ -36,14 +35,14 @@ namespace Friction
     SolverSettings
     settings_for(const dealii::types::global_dof_index n_dofs) const;
 
-    /** Is told the estimated error of a mesh, an energy norm. */
-    void add_estimate(const double                          estimated_error,
-                      const dealii::types::global_dof_index n_dofs);
-
-    /** The same, and how its solution went. */
+    /** Is told of a mesh that has been solved: all of them, in their order.
+     * @param estimated_error  an energy norm; zero if it is not known.
+     * @param n_dofs           number of unknowns.
+     * @param contraction      of the increments per cycle; zero if there was
+     *                         but one. */
     void add_level(const double                          estimated_error,
                    const dealii::types::global_dof_index n_dofs,
-                   const SolverReport                   &report);
+                   const double                          contraction);
 
   private:
     const SolverSettings            settings;

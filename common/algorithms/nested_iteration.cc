@@ -144,10 +144,11 @@ namespace Friction
 
   template <int dim>
   void
-  NestedIteration<dim>::add_estimate(
-    const double estimated_error, const dealii::types::global_dof_index n_dofs)
+  NestedIteration<dim>::add_level(const double estimated_error,
+                                  const dealii::types::global_dof_index n_dofs,
+                                  const double contraction)
   {
-    stop.add_estimate(estimated_error, n_dofs);
+    stop.add_level(estimated_error, n_dofs, contraction);
   }
 
 
@@ -178,7 +179,7 @@ namespace Friction
   {
     stop.add_level(estimate.total,
                    the_discretization.dof_handler().n_dofs(),
-                   last_report);
+                   last_report.contraction);
     if (the_parameters.refinement.strategy == RefinementStrategy::uniform)
       {
         mark_all();

@@ -63,10 +63,11 @@ namespace Friction
     /** Of the accepted solution. */
     ErrorEstimate estimate() const;
 
-    /** For the next mesh: what has been estimated on the last one of a run that
-     * is continued. */
-    void add_estimate(const double                          estimated_error,
-                      const dealii::types::global_dof_index n_dofs);
+    /** For the next mesh: what is known of the meshes of a run that is
+     * continued, see DiscretizationStop::add_level(). */
+    void add_level(const double                          estimated_error,
+                   const dealii::types::global_dof_index n_dofs,
+                   const double                          contraction);
 
     /** Whether the parameters do not want a finer mesh than this. */
     bool is_last() const;

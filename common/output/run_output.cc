@@ -294,10 +294,10 @@ namespace Friction
 
 
   template <int dim>
-  const LevelRecord &
-  RunOutput<dim>::last_level() const
+  const std::vector<LevelRecord> &
+  RunOutput<dim>::levels() const
   {
-    return history.levels().back();
+    return history.levels();
   }
 
 

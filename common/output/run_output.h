@@ -121,9 +121,9 @@ namespace Friction
      */
     unsigned int load_checkpoint(Triangulation &triangulation);
 
-    /// What is known of the last level that has been recorded, by this run or
-    /// by the one it continues. There must be one.
-    const LevelRecord &last_level() const;
+    /// What has been recorded of each level, by this run and by the one that it
+    /// continues.
+    const std::vector<LevelRecord> &levels() const;
 
   private:
     /// A number that changes if the coarse mesh does.

@@ -64,7 +64,7 @@ namespace
         u -= nest.displacement();
         const double        error = energy_norm<dim>(d.stiffness().blocks(), u);
         const ErrorEstimate estimate = nest.estimate();
-        stop.add_level(estimate.total, n_dofs, report);
+        stop.add_level(estimate.total, n_dofs, report.contraction);
         least_cycles =
           std::min<unsigned int>(least_cycles, report.cycles.size());
         share = std::max(share, error / estimate.total);
