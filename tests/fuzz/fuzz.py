@@ -2,7 +2,7 @@
 programs: whatever they are, a run has to end with a result or with a sentence.
 
 Usage: fuzz.py PROGRAM_2D PROGRAM_3D SCENES_2D SCENES_3D FOUND
-         [--seconds N] [--inputs N] [--seed N] [--processes MPIEXEC FLAG N]
+         [--seconds N] [--inputs N] [--seed N] [--launcher 'MPIEXEC FLAG N']
          [--verify SCRIPT] [--replay FOLDER]
 
 Each input is made from a number, its seed, which is printed with what is found and
@@ -340,8 +340,8 @@ class Fuzzer:
 
     def run(self, dimension, arguments):
         command = [self.programs[dimension]] + arguments
-        if self.a.processes:
-            launcher, flag, n = self.a.processes
+        if self.a.launcher:
+            launcher, flag, n = self.a.launcher.split()
             command = [launcher, flag, n] + command
         try:
             done = subprocess.run(command, stdout=subprocess.PIPE,
@@ -366,7 +366,7 @@ class Fuzzer:
             return 'error of the program'
         if status == 2:
             lines = [l for l in err.splitlines() if l.strip()]
-            if self.a.processes:
+            if self.a.launcher:
                 # The launcher has something to say, too.
                 lines = [l for l in lines if l.startswith('step-friction')]
             usage = any(l.startswith('Usage') for l in lines)
@@ -395,7 +395,7 @@ class Fuzzer:
                 return  # what is to be changed is not there
             self.n_inputs += 1
             limits = list(LIMITS)
-            verify = (self.a.verify and not self.a.processes and
+            verify = (self.a.verify and not self.a.launcher and
                       random.Random(seed).random() < .5)
             if verify:
                 limits.append('Output/Verification=true')
@@ -483,7 +483,8 @@ if __name__ == '__main__':
         parser.add_argument(name)
     parser.add_argument('--seconds', type=float, default=60.)
     parser.add_argument('--seed', type=int, default=1)
-    parser.add_argument('--processes', nargs=3)
+    parser.add_argument('--launcher', help='command that starts the programs on '
+                        'several processes, with its arguments')
     parser.add_argument('--inputs', type=int)
     parser.add_argument('--verify')
     parser.add_argument('--replay')
