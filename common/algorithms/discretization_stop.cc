@@ -47,8 +47,9 @@ namespace Friction
 
 
 
-  // The first mesh begins with nothing, which says little about those that begin
-  // with what a coarser one has found.
+  // The first mesh begins with nothing, which says little about those that
+  // begin with what a coarser one has found. What has not been seen on the last
+  // mesh is trusted less, until a mesh takes a second cycle again.
   template <int dim>
   void
   DiscretizationStop<dim>::add_level(
@@ -56,8 +57,8 @@ namespace Friction
     const dealii::types::global_dof_index n_dofs,
     const double                          contraction)
   {
-    if (n_dofs_then > 0 && contraction > 0)
-      pace = contraction;
+    if (n_dofs_then > 0)
+      pace = contraction > 0 ? contraction : std::min(.5, 2. * pace);
     error       = estimated_error / overestimation;
     n_dofs_then = n_dofs;
   }

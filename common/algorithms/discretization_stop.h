@@ -19,9 +19,10 @@ namespace Friction
    * taken, scaled by the rate at which errors fall with the number of unknowns,
    * $N^{-1/d}$, and halved, since the first meshes may do better than that.
    *
-   * Two increments say how large the error of the iteration is. Where a mesh has
-   * taken as many cycles, their contraction is what is expected of the next
-   * meshes, and there one cycle may be enough.
+   * Two increments say how large the error of the iteration is. Where a mesh
+   * has taken as many cycles, their contraction is what is expected of the next
+   * one, and there one cycle may be enough; of the one after that the double is
+   * expected, and so on.
    */
   template <int dim>
   class DiscretizationStop

@@ -161,12 +161,13 @@ namespace Friction
     const FE_Q<dim>       scalar(1);
     const QGauss<dim>     quadrature(fe.degree + 1);
     const QGauss<dim - 1> face_quadrature(fe.degree + 3);
-    FEValues<dim>         fe_values(the_mapping,
-                            scalar,
-                            quadrature,
-                            update_values | update_gradients |
-                              update_quadrature_points | update_JxW_values);
-    FEFaceValues<dim>     face_values(the_mapping,
+    FEValues<dim>         fe_values(
+      the_mapping,
+      scalar,
+      quadrature,
+      update_gradients | update_quadrature_points | update_JxW_values |
+        (the_scene.body_force() != nullptr ? update_values : update_default));
+    FEFaceValues<dim> face_values(the_mapping,
                                   scalar,
                                   face_quadrature,
                                   update_values | update_quadrature_points |

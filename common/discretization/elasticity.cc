@@ -1,6 +1,6 @@
 #include <common/discretization/elasticity.h>
 
-#include <vector>
+#include <array>
 
 namespace Friction
 {

@@ -47,8 +47,7 @@ namespace Friction
   template <int dim>
   LeafAssembler<dim>::LeafAssembler(const DoFHandler<dim> &dof_handler,
                                     const AffineConstraints<double> &hanging)
-    : owned_dofs(dof_handler.locally_owned_dofs())
-    , communicator(Compatibility::mpi_communicator(dof_handler))
+    : communicator(Compatibility::mpi_communicator(dof_handler))
     , coupled(dof_handler.n_dofs())
   {
     // The degrees of freedom of a node have consecutive numbers, dim to a node.
@@ -65,7 +64,7 @@ namespace Friction
                                                 entry.second);
           }
     if (Utilities::MPI::n_mpi_processes(communicator) > 1)
-      exchange_patterns();
+      exchange_patterns(dof_handler.locally_owned_dofs());
   }
 
 
@@ -81,11 +80,10 @@ namespace Friction
         const GlobalNode node = vertex_nodes[cell * n_vertices + v];
         const auto its = masters.empty() ? masters.end() : masters.find(node);
         if (its == masters.end())
-          shares.push_back({static_cast<unsigned int>(node), v, 1.});
+          shares.push_back({node, v, 1.});
         else
           for (const auto &master : its->second)
-            shares.push_back(
-              {static_cast<unsigned int>(master.first), v, master.second});
+            shares.push_back({master.first, v, master.second});
       }
   }
 
@@ -93,7 +91,7 @@ namespace Friction
 
   template <int dim>
   void
-  LeafAssembler<dim>::exchange_patterns()
+  LeafAssembler<dim>::exchange_patterns(const IndexSet &owned_dofs)
   {
     // The rows of others in our cells.
     const auto is_owned = [&](const GlobalNode node) {
@@ -136,10 +134,10 @@ namespace Friction
       for (auto it = message.second.begin(); it != message.second.end();)
         {
           Row row;
-          row.row              = *it++;
-          const GlobalNode end = *it++;
-          row.columns.assign(it, it + end);
-          it += end;
+          row.row                    = *it++;
+          const GlobalNode n_columns = *it++;
+          row.columns.assign(it, it + n_columns);
+          it += n_columns;
           for (const GlobalNode column : row.columns)
             if (!is_owned(column))
               coupled.add_range(column * dim, (column + 1) * dim);
@@ -317,6 +315,9 @@ namespace Friction
   void
   LeafAssembler<dim>::finish(VectorType &forces)
   {
+    AssertThrow(n_cells_done * n_vertices == vertex_nodes.size(),
+                ExcMessage("Each of the process' own active cells has to be "
+                           "added, in the order of the iterator."));
     forces.compress(VectorOperation::add);
     if (Utilities::MPI::n_mpi_processes(communicator) > 1)
       {

@@ -59,11 +59,11 @@ namespace Friction
                   const AffineConstraints<double> &hanging);
 
     /**
-     * The degrees of freedom of other processes that owned rows couple to, as
-     * far as they are not locally relevant. Usually there are none: rows couple
-     * to the nodes of the process' own cells and of their neighbours. But a row
-     * to which a hanging node has been condensed reaches all cells around that
-     * node, and one of them may be farther away.
+     * Degrees of freedom of other processes that owned rows couple to: all of
+     * them that are not locally relevant, and some that are. Usually rows
+     * couple to the nodes of the process' own cells and of their neighbours.
+     * But a row to which a hanging node has been condensed reaches all cells
+     * around that node, and one of them may be farther away.
      */
     const IndexSet &
     coupled_dofs() const
@@ -83,7 +83,8 @@ namespace Friction
              const CellForces &cell_forces,
              VectorType       &forces);
 
-    /** Gathers what other processes have found. Collective. */
+    /** Gathers what other processes have found. Collective, and an error unless
+     * all cells have been added. */
     void finish(VectorType &forces);
 
     /** The matrix: rows of owned nodes, columns in local numbers. Rows and
@@ -98,7 +99,7 @@ namespace Friction
     // A node that has a share in the value at a vertex of the present cell.
     struct Share
     {
-      unsigned int node;
+      GlobalNode   node; // or its local number, from begin() on
       unsigned int vertex;
       double       weight;
     };
@@ -113,9 +114,8 @@ namespace Friction
 
     using Masters = std::vector<std::pair<GlobalNode, double>>;
 
-    const IndexSet &owned_dofs;
-    const MPI_Comm  communicator;
-    IndexSet        coupled;
+    const MPI_Comm communicator;
+    IndexSet       coupled;
 
     // The nodes at the vertices of the process' own cells: global numbers
     // first, local ones from begin() on; and where hanging nodes get their
@@ -135,7 +135,7 @@ namespace Friction
 
     void collect_shares(const std::size_t cell);
 
-    void exchange_patterns();
+    void exchange_patterns(const IndexSet &owned_dofs);
 
     void make_numbers_local();
 

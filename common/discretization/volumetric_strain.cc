@@ -2,8 +2,6 @@
 
 #include <deal.II/base/quadrature_lib.h>
 
-#include <algorithm>
-
 namespace Friction
 {
   using namespace dealii;

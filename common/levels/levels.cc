@@ -72,8 +72,7 @@ namespace Friction
   Levels<dim>::memory_consumption() const
   {
     return level_hierarchy.memory_consumption() +
-      level_matrices.memory_consumption() +
-      level_transfer.memory_consumption();
+      level_matrices.memory_consumption() + level_transfer.memory_consumption();
   }
 
 

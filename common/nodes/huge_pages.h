@@ -18,7 +18,8 @@ namespace Friction
    * dimensions is half of a small page, and reading such a matrix takes twice
    * as long as with large pages.
    *
-   * No more memory is used: what does not fill a large page has small ones.
+   * No more memory is touched, since what does not fill a large page has small
+   * ones; of addresses there are up to two large pages more.
    */
   template <typename T>
   class HugePageAllocator

@@ -166,8 +166,9 @@ namespace Friction
 
 
 
-      // Adds up n blocks times values, from position e of the matrix on. Two
-      // sums, so that an addition need not wait for the one before it.
+      // Adds up n blocks times values, from this one on, forwards or backwards
+      // by steps of 1 or -1. Two sums, so that an addition need not wait for
+      // the one before it.
       template <int dim, typename Four>
       inline DEAL_II_ALWAYS_INLINE void
       add_blocks(Sum<dim, Four>      &sum,

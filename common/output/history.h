@@ -31,7 +31,8 @@ namespace Friction
     /// How many methods the safeguards had to try; one if all was well.
     unsigned int attempts = 1;
 
-    /// Mean contraction of the increments per cycle.
+    /// Mean contraction of the increments per cycle; zero if there was but one
+    /// cycle.
     double contraction = 0.;
 
     /// Algorithm 2: contraction of the relative changes of the normal forces,

@@ -1,9 +1,9 @@
 #include <common/compatibility.h>
 #include <common/output/profile.h>
-#include <common/parallel/run_clock.h>
 #include <common/output/run_output.h>
 #include <common/output/warnings.h>
 #include <common/parallel/collective_error.h>
+#include <common/parallel/run_clock.h>
 #include <common/printable.h>
 
 #include <boost/archive/binary_iarchive.hpp>
@@ -142,14 +142,14 @@ namespace Friction
       records.level, records.cycles, records.contact, records.outer);
     if (parameters.output.fields)
       {
-      const RunScope part_of_fields(communicator, RunPart::fields);
-      fields.write_level(records.level.level,
-                         {discretization.mapping(),
-                          discretization.dof_handler(),
-                          discretization.hanging_nodes(),
-                          displacement,
-                          cell_errors.size() > 0 ? &cell_errors : nullptr},
-                         records.own_contact);
+        const RunScope part_of_fields(communicator, RunPart::fields);
+        fields.write_level(records.level.level,
+                           {discretization.mapping(),
+                            discretization.dof_handler(),
+                            discretization.hanging_nodes(),
+                            displacement,
+                            cell_errors.size() > 0 ? &cell_errors : nullptr},
+                           records.own_contact);
       }
     if (parameters.output.verification)
       verification.write_level(

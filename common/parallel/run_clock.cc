@@ -20,6 +20,25 @@ namespace Friction
                                                      "records",
                                                      "fields"};
 
+    using Place = std::shared_ptr<RunClock *>;
+
+    // A communicator has a Place of its own, which goes with it.
+    int
+    copy_place(MPI_Comm, int, void *, void *place, void *new_place, int *flag)
+    {
+      *static_cast<void **>(new_place) =
+        new Place(*static_cast<Place *>(place));
+      *flag = 1;
+      return MPI_SUCCESS;
+    }
+
+    int
+    delete_place(MPI_Comm, int, void *place, void *)
+    {
+      delete static_cast<Place *>(place);
+      return MPI_SUCCESS;
+    }
+
     // The key under which MPI keeps clocks. A duplicate of a communicator has
     // the same one.
     int
@@ -27,8 +46,7 @@ namespace Friction
     {
       static const int key = []() {
         int new_key = MPI_KEYVAL_INVALID;
-        MPI_Comm_create_keyval(
-          MPI_COMM_DUP_FN, MPI_COMM_NULL_DELETE_FN, &new_key, nullptr);
+        MPI_Comm_create_keyval(copy_place, delete_place, &new_key, nullptr);
         return new_key;
       }();
       return key;
@@ -39,16 +57,14 @@ namespace Friction
 
   RunClock::RunClock(const std::chrono::steady_clock::time_point begin)
     : since(begin)
+    , place(std::make_shared<RunClock *>(this))
   {}
 
 
 
   RunClock::~RunClock()
   {
-    int finalized = 0;
-    MPI_Finalized(&finalized);
-    if (attached_to != MPI_COMM_NULL && !finalized)
-      MPI_Comm_delete_attr(attached_to, clock_key());
+    *place = nullptr;
   }
 
 
@@ -56,8 +72,7 @@ namespace Friction
   void
   RunClock::attach(const MPI_Comm communicator)
   {
-    attached_to = communicator;
-    MPI_Comm_set_attr(communicator, clock_key(), this);
+    MPI_Comm_set_attr(communicator, clock_key(), new Place(place));
   }
 
 
@@ -65,10 +80,10 @@ namespace Friction
   RunClock *
   RunClock::of(const MPI_Comm communicator)
   {
-    void *clock = nullptr;
+    void *place = nullptr;
     int   found = 0;
-    MPI_Comm_get_attr(communicator, clock_key(), &clock, &found);
-    return found ? static_cast<RunClock *>(clock) : nullptr;
+    MPI_Comm_get_attr(communicator, clock_key(), &place, &found);
+    return found ? **static_cast<Place *>(place) : nullptr;
   }
 
 

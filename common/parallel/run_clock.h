@@ -5,6 +5,7 @@
 
 #include <array>
 #include <chrono>
+#include <memory>
 #include <string>
 
 namespace Friction
@@ -25,14 +26,15 @@ namespace Friction
     fields    ///< files for ParaView
   };
 
-  constexpr unsigned int n_run_parts = 11;
+  constexpr unsigned int n_run_parts =
+    static_cast<unsigned int>(RunPart::fields) + 1;
 
   /**
    * Where the wall time of a run goes on this process.
    *
    * The clock is attached to a communicator, as CostAccount is, and to all that
-   * are duplicated from it afterwards; RunScope finds it there. A program
-   * without a clock, a test for example, does without.
+   * are duplicated from it afterwards; RunScope finds it there, as long as the
+   * clock exists. A program without a clock, a test for example, does without.
    */
   class RunClock
   {
@@ -45,7 +47,7 @@ namespace Friction
     RunClock(const RunClock &)            = delete;
     RunClock &operator=(const RunClock &) = delete;
 
-    /** Makes this the clock of @p communicator, which has to outlive it. */
+    /** Makes this the clock of @p communicator. Call it once. */
     void attach(const MPI_Comm communicator);
 
     /** The clock of a communicator; null if it has none. */
@@ -58,7 +60,8 @@ namespace Friction
     /** Seconds until now, by part. */
     const std::array<double, n_run_parts> &seconds();
 
-    /** A table of the parts, with the share that each has in the whole. */
+    /** A table of the parts, with the share that each has in the whole. Of this
+     * process: where it waits for others is not told. */
     std::string describe();
 
   private:
@@ -67,7 +70,9 @@ namespace Friction
     std::array<double, n_run_parts> all_seconds{};
     RunPart                         present = RunPart::start;
     Clock::time_point               since;
-    MPI_Comm                        attached_to = MPI_COMM_NULL;
+
+    // What communicators keep: where the clock is, or that it is gone.
+    std::shared_ptr<RunClock *> place;
   };
 
   /** Sets the part of the run until the object is destroyed, when the part

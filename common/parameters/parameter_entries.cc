@@ -468,7 +468,7 @@ namespace Friction
        "Whether the console shows for each level what the parts of the solver "
        "have cost: messages, bytes and reductions per cycle and process, and "
        "seconds if 'Times' are wanted; then also the parts of the whole run at "
-       "its end."},
+       "its end, on the first process."},
       {"Output",
        "Verbosity",
        "cycles",

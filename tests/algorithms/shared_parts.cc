@@ -30,6 +30,29 @@ operator new(const std::size_t size)
   throw std::bad_alloc();
 }
 
+void *
+operator new(const std::size_t size, const std::align_val_t alignment)
+{
+  if (size >= large)
+    allocated += size;
+  const std::size_t a = static_cast<std::size_t>(alignment);
+  if (void *memory = std::aligned_alloc(a, (size + a - 1) / a * a))
+    return memory;
+  throw std::bad_alloc();
+}
+
+void
+operator delete(void *memory, const std::align_val_t) noexcept
+{
+  std::free(memory);
+}
+
+void
+operator delete(void *memory, std::size_t, const std::align_val_t) noexcept
+{
+  std::free(memory);
+}
+
 void
 operator delete(void *memory) noexcept
 {

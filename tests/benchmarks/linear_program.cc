@@ -1,7 +1,7 @@
 // A plain program for linear elasticity in the manner of step-40, as an
 // opponent for whole runs: the mesh of a scene, refined at once to the level
-// that is asked for, the contact boundary held, other boundary conditions as in
-// the scene, one matrix of Trilinos, and conjugate gradients with algebraic
+// that is asked for, the contact boundary held, prescribed displacements as in
+// the scene, which must not have loads, one matrix of Trilinos, and conjugate gradients with algebraic
 // multigrid (ML), which gets the rigid motions, to a residual of 1e-9. No
 // output, no estimate, no levels before the last.
 //
@@ -9,8 +9,8 @@
 // for the discrete problem.
 //
 // Usage: benchmark-linear_program 2|3 scene.prm refinements
-// [Section/Entry=value
-// ...]
+//
+// and after that, if need be, Section/Entry=value.
 //
 // Prints degrees of freedom, iterations, and seconds by parts.
 
@@ -47,6 +47,7 @@
 
 #include <cstdio>
 #include <iostream>
+#include <string>
 
 namespace Benchmark
 {
@@ -61,8 +62,11 @@ namespace Benchmark
   {
     const Scene<dim> scene(parameters);
     const MPI_Comm   comm = MPI_COMM_WORLD;
-    Timer            timer;
-    const auto       lap = [&]() {
+    if (scene.body_force() != nullptr || !scene.traction_conditions().empty() ||
+        !scene.pinned_points().empty())
+      throw InputError("this program knows prescribed displacements only.");
+    Timer      timer;
+    const auto lap = [&]() {
       const double seconds = timer.wall_time();
       timer.restart();
       return seconds;
@@ -218,10 +222,18 @@ main(int argc, char **argv)
                    "[Section/Entry=value ...]\n";
       return 2;
     }
-  const Friction::Parameters parameters =
-    Friction::read_parameters(argv[2], {argv + 4, argv + argc});
-  if (std::string(argv[1]) == "2")
-    Benchmark::run<2>(parameters, std::stoi(argv[3]));
-  else
-    Benchmark::run<3>(parameters, std::stoi(argv[3]));
+  try
+    {
+      const Friction::Parameters parameters =
+        Friction::read_parameters(argv[2], {argv + 4, argv + argc});
+      if (std::string(argv[1]) == "2")
+        Benchmark::run<2>(parameters, std::stoi(argv[3]));
+      else
+        Benchmark::run<3>(parameters, std::stoi(argv[3]));
+    }
+  catch (const Friction::InputError &error)
+    {
+      std::cerr << error.what() << std::endl;
+      return 2;
+    }
 }

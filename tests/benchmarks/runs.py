@@ -57,7 +57,9 @@ class Run:
 
     def dofs(self):
         rows = [m for m in map(TABLE.match, self.output.split("\n")) if m]
-        return int(rows[-1].group(2)) if rows else 0
+        if not rows:
+            sys.exit("there is no table of levels in\n" + self.output)
+        return int(rows[-1].group(2))
 
     def parts(self):
         return {m.group(1): float(m.group(2))
@@ -77,7 +79,7 @@ def main():
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("programs", nargs=5)
     parser.add_argument("--before", nargs=2)
-    parser.add_argument("--repeat", type=int, default=3)
+    parser.add_argument("--repeat", type=int, default=2)
     parser.add_argument("--quick", action="store_true")
     arguments = parser.parse_args()
     program = dict(zip("23", arguments.programs[:2]))
@@ -139,7 +141,7 @@ def main():
             print(name)
             for part, seconds in runs[0].items():
                 row = "  %-22s %8.2f %5.1f%%" % (
-                    part, seconds, 100 * seconds / runs[0]["all"])
+                    part, seconds, 100 * seconds / max(runs[0]["all"], 1e-9))
                 if len(runs) > 1 and part in runs[1]:
                     row += " %8.2f" % runs[1][part]
                 print(row)

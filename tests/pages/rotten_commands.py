@@ -43,7 +43,7 @@ CASES = [
     ("shortened", "shortened: Refinement/Levels=1", f"{RUN} Refinement/Levels=2",
      [HEAD] + ROWS, None),
     ("error that is shown", "", FAILING, ["...", "No convergence on level 0 within "
-     "1 cycles. Certificate: equilibrium 1.00e-16, penetration 0.00e+00, tension "
+     "1 cycle. Certificate: equilibrium 1.00e-16, penetration 0.00e+00, tension "
      "1.00e-16, complementarity 1.00e-16, friction cone 1.00e-16, slip direction "
      "1.00e-16."], None),
     ("error that is not shown", "", FAILING,
