@@ -1,9 +1,9 @@
 // A plain program for linear elasticity in the manner of step-40, as an
 // opponent for whole runs: the mesh of a scene, refined at once to the level
 // that is asked for, the contact boundary held, prescribed displacements as in
-// the scene, which must not have loads, one matrix of Trilinos, and conjugate gradients with algebraic
-// multigrid (ML), which gets the rigid motions, to a residual of 1e-9. No
-// output, no estimate, no levels before the last.
+// the scene, which must not have loads, one matrix of Trilinos, and conjugate
+// gradients with algebraic multigrid (ML), which gets the rigid motions, to a
+// residual of 1e-9. No output, no estimate, no levels before the last.
 //
 // It uses the library for the scene file and its coarse mesh, and nothing of it
 // for the discrete problem.
