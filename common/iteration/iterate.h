@@ -52,25 +52,22 @@ namespace Friction
       step_image.reinit(0);
     }
 
-    /** To be called before a step, and after it. */
+    /** To be called before the displacement changes, and when the last step is
+     * no longer needed: where it has been the new one begins. */
     void
     begin_step()
     {
-      old_u        = u;
-      old_residual = residual;
+      step       = u;
+      step_image = residual;
     }
 
+    /** To be called after it, when the residual is that of the displacement. */
     void
     end_step()
     {
-      combine_owned(old_u, -1., 1., u);
-      combine_owned(old_residual, 1., -1., residual);
-      step.swap(old_u);
-      step_image.swap(old_residual);
+      combine_owned(step, -1., 1., u);
+      combine_owned(step_image, 1., -1., residual);
     }
-
-  private:
-    VectorType old_u, old_residual;
   };
 } // namespace Friction
 

@@ -70,14 +70,14 @@ namespace Friction
   double
   MonotoneMultigrid<dim>::iterate(Iterate &x)
   {
-    x.begin_step();
     linearization->update(x);
     updated_rows += correction->update(*linearization, x);
     linearization->linearize_residual(r, x);
     correction->apply(v, r);
-    const double length =
-      step_control->advance(x, v, r, linearization->truncation());
+    step_control->improve(v, x, r, linearization->truncation());
 
+    x.begin_step();
+    const double length = step_control->advance(x, v);
     smoother->backward(x, smoothing_steps);
     smoother->forward(x, smoothing_steps);
     x.end_step();

@@ -2,6 +2,7 @@
 #include <common/parallel/owned_values.h>
 #include <common/parallel/reductions.h>
 
+#include <algorithm>
 #include <array>
 
 namespace Friction
@@ -15,6 +16,16 @@ namespace Friction
 
 
   template <int dim>
+  void
+  StepControl<dim>::improve(VectorType &,
+                            const Iterate &,
+                            const VectorType &,
+                            const Truncation<dim> &)
+  {}
+
+
+
+  template <int dim>
   FullStep<dim>::FullStep(const TrescaFunctional<dim> &functional)
     : functional(functional)
   {}
@@ -23,12 +34,9 @@ namespace Friction
 
   template <int dim>
   double
-  FullStep<dim>::advance(Iterate    &x,
-                         VectorType &v,
-                         const VectorType &,
-                         const Truncation<dim> &)
+  FullStep<dim>::advance(Iterate &x, VectorType &v)
   {
-    functional.project(v, x.u);
+    functional.project(v, x.u, 1.);
     add_owned(x.u, 1., v);
     return 1.;
   }
@@ -57,9 +65,9 @@ namespace Friction
 
 
   template <int dim>
-  double
-  LineSearch<dim>::advance(Iterate               &x,
-                           VectorType            &v,
+  void
+  LineSearch<dim>::improve(VectorType            &v,
+                           const Iterate         &x,
                            const VectorType      &r,
                            const Truncation<dim> &truncation)
   {
@@ -67,14 +75,25 @@ namespace Friction
     Av.reinit(v, true);
     problem.stiffness.vmult(Av, v);
     recombination.improve(v, Av, x, r, truncation);
+  }
+
+
+
+  // The correction keeps its size, and lengths are all relative to it: scaling
+  // it would be one more pass over a vector.
+  template <int dim>
+  double
+  LineSearch<dim>::advance(Iterate &x, VectorType &v)
+  {
+    const PhaseScope phase(problem.communicator(), SolverPhase::line_search);
 
     // Where a node would have to reverse its slip, the linearisation knows
     // nothing of what comes. A single such node would hold up all others in the
     // line search; it rather stops, and the relaxation decides how it goes on.
-    whole                        = v;
-    const unsigned int n_stopped = functional.keep_slip(v, x.u, x.state);
-    Products           products  = products_along(v, x.residual, n_stopped);
-    const bool         stopped   = products.n_changed > 0;
+    const ContactValues before    = contact_values(v);
+    const unsigned int  n_stopped = functional.keep_slip(v, x.u, x.state);
+    Products            products  = products_along(v, x.residual, n_stopped);
+    const bool          stopped   = products.n_changed > 0;
     if (stopped)
       {
         problem.stiffness.vmult(Av, v);
@@ -84,36 +103,51 @@ namespace Friction
       return 0.;
     double length = functional.minimize_along(
       v, x, products.slope, products.curvature, largest_step);
-    scale_owned(v, length);
-    const bool cut_off = true_on_any_process(functional.project(v, x.u) > 0,
-                                             problem.communicator());
+    const bool cut_off = true_on_any_process(
+      functional.project(v, x.u, length) > 0, problem.communicator());
     // The obstacle has cut the correction off: minimise along what is left of
     // it, as far as that is admissible.
     if (cut_off)
-      length *= minimize_within_obstacle(x, v);
+      length = minimize_within_obstacle(x, v, largest_step * length);
     if (length < short_step && (cut_off || stopped))
-      length = try_whole_correction(x, v, length);
-    add_owned(x.u, 1., v);
+      length = try_whole_correction(x, v, length, before);
+    add_owned(x.u, length, v);
     return length;
   }
 
 
 
-  // Scales v, as far as it is admissible. Returns the factor.
+  // The best length of v as far as it is admissible, and not more than the
+  // largest.
   template <int dim>
   double
-  LineSearch<dim>::minimize_within_obstacle(const Iterate &x, VectorType &v)
+  LineSearch<dim>::minimize_within_obstacle(const Iterate    &x,
+                                            const VectorType &v,
+                                            const double      largest)
   {
     problem.stiffness.vmult(Av, v);
     const Products products = products_along(v, x.residual, 0);
-    const double   length   = functional.minimize_along(
+    return functional.minimize_along(
       v,
       x,
       products.slope,
       products.curvature,
-      functional.admissible_length(v, x.u, largest_step));
-    scale_owned(v, length);
-    return length;
+      functional.admissible_length(v, x.u, largest));
+  }
+
+
+
+  template <int dim>
+  double
+  LineSearch<dim>::energy_after(const Iterate    &x,
+                                const VectorType &v,
+                                const double      length)
+  {
+    problem.stiffness.vmult(Av, v);
+    VectorType moved(x.u), r(x.residual);
+    add_owned(moved, length, v);
+    add_owned(r, -length, Av);
+    return functional.energy(moved, r, x.state);
   }
 
 
@@ -125,30 +159,41 @@ namespace Friction
   // next node touches; the line search knows what it costs that nodes reverse
   // their slip. Of the two steps the one is taken that lowers the energy more.
   //
-  // On call v is the first step and length what it is of its correction; on
-  // return they are those of the better step.
+  // On call v and length are the first step, and before what the correction has
+  // been at contact nodes, which is all that has been changed of it; on return
+  // v and the length are those of the better step.
   template <int dim>
   double
-  LineSearch<dim>::try_whole_correction(const Iterate &x,
-                                        VectorType    &v,
-                                        const double   length)
+  LineSearch<dim>::try_whole_correction(const Iterate       &x,
+                                        VectorType          &v,
+                                        const double         length,
+                                        const ContactValues &before)
   {
-    const double other_length = minimize_within_obstacle(x, whole);
-    functional.project(whole, x.u);
-
-    VectorType moved(v), r(v);
-    const auto energy_after = [&](const VectorType &step) {
-      problem.stiffness.vmult(Av, step);
-      moved = x.u;
-      add_owned(moved, 1., step);
-      r = x.residual;
-      add_owned(r, -1., Av);
-      return functional.energy(moved, r, x.state);
-    };
-    if (!(energy_after(whole) < energy_after(v)))
+    VectorType whole(v);
+    for (unsigned int p = 0; p < problem.contact.size(); ++p)
+      std::copy(before[p].begin(),
+                before[p].end(),
+                whole.begin() + dim * problem.contact[p].node);
+    const double other_length =
+      minimize_within_obstacle(x, whole, largest_step);
+    functional.project(whole, x.u, other_length);
+    if (!(energy_after(x, whole, other_length) < energy_after(x, v, length)))
       return length;
-    v = whole;
+    v.swap(whole);
     return other_length;
+  }
+
+
+
+  template <int dim>
+  typename LineSearch<dim>::ContactValues
+  LineSearch<dim>::contact_values(const VectorType &v) const
+  {
+    ContactValues values(problem.contact.size());
+    for (unsigned int p = 0; p < values.size(); ++p)
+      std::copy_n(
+        v.begin() + dim * problem.contact[p].node, dim, values[p].begin());
+    return values;
   }
 
 
@@ -168,6 +213,8 @@ namespace Friction
 
 
 
+  template class StepControl<2>;
+  template class StepControl<3>;
   template class FullStep<2>;
   template class FullStep<3>;
   template class LineSearch<2>;

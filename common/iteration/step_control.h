@@ -24,16 +24,23 @@ namespace Friction
     {}
 
     /**
-     * Adds to x.u as much of the correction @p v as is good. Collective.
-     * @param v           which is changed.
+     * Makes the correction better by what earlier steps tell. Collective.
+     * @param v           the correction, which is changed.
+     * @param x           with its last step.
      * @param r           the truncated residual that v was found for.
      * @param truncation  that v belongs to.
+     */
+    virtual void improve(VectorType            &v,
+                         const Iterate         &x,
+                         const VectorType      &r,
+                         const Truncation<dim> &truncation);
+
+    /**
+     * Adds to x.u as much of the correction @p v as is good; v is changed.
+     * Collective.
      * @return the part of v that has been added; may be larger than one.
      */
-    virtual double advance(Iterate               &x,
-                           VectorType            &v,
-                           const VectorType      &r,
-                           const Truncation<dim> &truncation) = 0;
+    virtual double advance(Iterate &x, VectorType &v) = 0;
   };
 
 
@@ -49,10 +56,7 @@ namespace Friction
     /** @p functional is kept by reference. */
     explicit FullStep(const TrescaFunctional<dim> &functional);
 
-    double advance(Iterate               &x,
-                   VectorType            &v,
-                   const VectorType      &r,
-                   const Truncation<dim> &truncation) override;
+    double advance(Iterate &x, VectorType &v) override;
 
   private:
     const TrescaFunctional<dim> &functional;
@@ -83,17 +87,19 @@ namespace Friction
 
     void begin() override;
 
-    double advance(Iterate               &x,
-                   VectorType            &v,
-                   const VectorType      &r,
-                   const Truncation<dim> &truncation) override;
+    void improve(VectorType            &v,
+                 const Iterate         &x,
+                 const VectorType      &r,
+                 const Truncation<dim> &truncation) override;
+
+    double advance(Iterate &x, VectorType &v) override;
 
   private:
     const TrescaFunctional<dim> &functional;
     const DiscreteProblem<dim>  &problem;
     const double                 largest_step;
     Recombination<dim>           recombination;
-    VectorType                   Av, whole;
+    VectorType                   Av;
 
     // What the line search along v needs to know of its quadratic part, and a
     // number that is summed up in passing.
@@ -107,10 +113,22 @@ namespace Friction
                             const VectorType  &residual,
                             const unsigned int n_changed) const;
 
-    double minimize_within_obstacle(const Iterate &x, VectorType &v);
+    double minimize_within_obstacle(const Iterate    &x,
+                                    const VectorType &v,
+                                    const double      largest);
 
     double
-    try_whole_correction(const Iterate &x, VectorType &v, const double length);
+    energy_after(const Iterate &x, const VectorType &v, const double length);
+
+    // Values at the contact nodes of this process, one after the other.
+    using ContactValues = std::vector<NodeValue<dim>>;
+
+    ContactValues contact_values(const VectorType &v) const;
+
+    double try_whole_correction(const Iterate       &x,
+                                VectorType          &v,
+                                const double         length,
+                                const ContactValues &before);
   };
 } // namespace Friction
 

@@ -103,14 +103,16 @@ namespace Friction
 
   template <int dim>
   unsigned int
-  TrescaFunctional<dim>::project(VectorType &v, const VectorType &u) const
+  TrescaFunctional<dim>::project(VectorType       &v,
+                                 const VectorType &u,
+                                 const double      length) const
   {
     unsigned int n_projected = 0;
     for (const ContactNode<dim> &node : problem.contact)
       {
         // A node that is in contact already has no normal correction but
         // rounding, which is no reason to project.
-        const double v_n = normal_component(node, v);
+        const double v_n = length * normal_component(node, v);
         if (v_n <= 0)
           continue;
         const double room = std::max(0., node.gap - normal_component(node, u));
@@ -118,7 +120,7 @@ namespace Friction
           {
             for (unsigned int d = 0; d < dim; ++d)
               v.local_element(dim * node.node + d) -=
-                (v_n - room) * node.normal()[d];
+                (v_n - room) / length * node.normal()[d];
             if (v_n - room > rounding_at(node, u, v))
               ++n_projected;
           }

@@ -45,10 +45,11 @@ namespace Friction
     double largest_penetration(const VectorType &u) const;
 
     /**
-     * Changes @p v such that u + v does not penetrate the obstacle. Returns the
-     * number of this process' nodes where it had to.
+     * Changes @p v such that u + length v does not penetrate the obstacle.
+     * Returns the number of this process' nodes where it had to.
      */
-    unsigned int project(VectorType &v, const VectorType &u) const;
+    unsigned int
+    project(VectorType &v, const VectorType &u, const double length) const;
 
     /**
      * Changes @p v such that at each sliding node $(u+v)_T\cdot u_T\ge0$: no

@@ -328,7 +328,7 @@ namespace
               {
                 v *= functional.minimize_along(
                   v, x, residual * v, v * fixture.product(v), 2.);
-                if (functional.project(v, u) > 0)
+                if (functional.project(v, u, 1.) > 0)
                   v *= functional.minimize_along(
                     v,
                     x,
@@ -556,7 +556,7 @@ namespace
         v *= fixture.length * fixture.random(0, 1);
         const VectorType original(v);
 
-        const unsigned int n_projected = functional.project(v, u);
+        const unsigned int n_projected = functional.project(v, u, 1.);
         VectorType         w(u);
         w += v;
         penetration = std::max(
