@@ -713,7 +713,6 @@ namespace
             smoothed.residual = residual(x);
             if (k > 0)
               smoothed.end_step();
-            smoothed.begin_step();
             const VectorType r  = truncated_residual(x);
             VectorType       v  = precondition(r);
             VectorType       Av = fixture.product(v);
@@ -736,6 +735,7 @@ namespace
                   length_error = std::max(
                     length_error, std::abs((r * v) / square(v, Av) - 1));
               }
+            smoothed.begin_step();
             x.add((r * v) / square(v, Av), v);
             if (n_steps > 0 && k < 12)
               difference = std::max(
