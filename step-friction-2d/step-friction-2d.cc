@@ -203,8 +203,9 @@ namespace StepFriction2d
   // divergence of the former, which is that of the gradient, $\theta_a=g_a$.
   // Only if a scene says <code>Material/Volumetric strain = mean</code>,
   // because its material is nearly incompressible, $\theta_a$ is the mean of
-  // the gradient over the cell. Blocks above the diagonal follow from those
-  // below.
+  // the gradient over the cell. Lam&eacute;'s constants are those of the cell,
+  // since there may be other materials in some regions. Blocks above the
+  // diagonal follow from those below.
   //
   // The loop over cells, loads and hanging nodes do what those of step-40 do,
   // by blocks and with one exception that has been mentioned: prescribed values
@@ -214,14 +215,14 @@ namespace StepFriction2d
   void
   ContactProblem<dim>::assemble()
   {
-    const double             lambda = scene.material().lambda();
-    const double             mu     = scene.material().mu();
-    const Tensor<2, dim>     unit   = unit_symmetric_tensor<dim>();
+    const Tensor<2, dim>     unit = unit_symmetric_tensor<dim>();
     Table<2, Tensor<1, dim>> theta;
 
     discretization.assemble(
       [&](const FEValues<dim> &fe_values, CellBlocks<dim> &cell_blocks) {
-        shape_volumetric_strains(fe_values, scene.material(), theta);
+        const Material &material = scene.materials().of(fe_values.get_cell());
+        const double    lambda = material.lambda(), mu = material.mu();
+        shape_volumetric_strains(fe_values, material, theta);
         for (const unsigned int q : fe_values.quadrature_point_indices())
           for (const unsigned int a : fe_values.dof_indices())
             {
@@ -428,7 +429,7 @@ namespace StepFriction2d
     if (scene.exact_displacement() != nullptr)
       output.add_exact_error(compute_exact_error(discretization.mapping(),
                                                  discretization.dof_handler(),
-                                                 scene.material(),
+                                                 scene.materials(),
                                                  *scene.exact_displacement(),
                                                  displacement),
                              parameters.refinement.strategy ==

@@ -15,7 +15,7 @@ namespace Friction
                                         const MPI_Comm       communicator)
     : the_parameters(parameters)
     , the_scene(parameters)
-    , bilinear_form(form ? form : elasticity<dim>(the_scene.material()))
+    , bilinear_form(form ? form : elasticity<dim>(the_scene.materials()))
     , triangulation(make_triangulation<dim>(communicator))
     , the_discretization(the_scene, *triangulation)
     , stop(the_parameters.solver)

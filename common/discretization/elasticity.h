@@ -2,7 +2,7 @@
 #define friction_discretization_elasticity_h
 
 #include <common/discretization/cell_form.h>
-#include <common/parameters/material.h>
+#include <common/scene/materials.h>
 
 namespace Friction
 {
@@ -15,7 +15,7 @@ namespace Friction
    * with the volumetric strain of shape_volumetric_strains().
    */
   template <int dim>
-  CellForm<dim> elasticity(const Material &material);
+  CellForm<dim> elasticity(const Materials<dim> &materials);
 } // namespace Friction
 
 #endif

@@ -35,10 +35,10 @@ namespace Friction
   VolumetricStrainField<dim>::VolumetricStrainField(
     const Mapping<dim>    &mapping,
     const DoFHandler<dim> &dof_handler,
-    const VolumetricStrain kind,
+    const Materials<dim>  &materials,
     const VectorType      &displacement)
   {
-    if (kind == VolumetricStrain::pointwise)
+    if (!materials.uses_means())
       return;
 
     const QGauss<dim> quadrature(dof_handler.get_fe().degree + 1);

@@ -1,7 +1,7 @@
 #ifndef friction_discretization_volumetric_strain_h
 #define friction_discretization_volumetric_strain_h
 
-#include <common/parameters/material.h>
+#include <common/scene/materials.h>
 
 #include <deal.II/base/table.h>
 #include <deal.II/base/tensor.h>
@@ -74,36 +74,23 @@ namespace Friction
     /** @param displacement with ghost values and hanging nodes interpolated. */
     VolumetricStrainField(const dealii::Mapping<dim>    &mapping,
                           const dealii::DoFHandler<dim> &dof_handler,
-                          const VolumetricStrain         kind,
+                          const Materials<dim>          &materials,
                           const VectorType              &displacement);
 
-    bool
-    is_pointwise() const
-    {
-      return means.empty();
-    }
-
-    /** In a cell that is not artificial, at a point with this divergence. */
+    /** In a cell that is not artificial, of this material, at a point with this
+     * divergence. */
     double
-    value(const CellIterator &cell, const double divergence) const
+    value(const CellIterator &cell,
+          const Material     &material,
+          const double        divergence) const
     {
-      return is_pointwise() ? divergence : means[cell->active_cell_index()];
-    }
-
-    /** What one cell has more than another one, at a point where the divergence
-     * jumps by that much. */
-    double
-    jump(const CellIterator &cell,
-         const CellIterator &neighbor,
-         const double        divergence) const
-    {
-      return is_pointwise() ? divergence
-                            : means[cell->active_cell_index()] -
-          means[neighbor->active_cell_index()];
+      return material.volumetric_strain() == VolumetricStrain::pointwise
+        ? divergence
+        : means[cell->active_cell_index()];
     }
 
   private:
-    // One per active cell; none where they are not needed.
+    // One per active cell; none if no material needs them.
     std::vector<double> means;
   };
 } // namespace Friction

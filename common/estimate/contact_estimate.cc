@@ -12,10 +12,7 @@ namespace Friction
     const RunScope        part(discretization.constraints().communicator(),
                         RunPart::estimate);
     const Scene<dim>     &scene = discretization.scene();
-    EstimatorProblem<dim> problem;
-    problem.lambda               = scene.material().lambda();
-    problem.mu                   = scene.material().mu();
-    problem.volumetric_strain    = scene.material().volumetric_strain();
+    EstimatorProblem<dim> problem(scene.materials());
     problem.body_force           = scene.body_force().get();
     problem.contact_boundary     = scene.contact_boundary_id();
     problem.friction_coefficient = scene.friction_coefficient();

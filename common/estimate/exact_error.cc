@@ -49,12 +49,12 @@ namespace Friction
   ExactError
   compute_exact_error(const Mapping<dim>    &mapping,
                       const DoFHandler<dim> &dof_handler,
-                      const Material        &material,
+                      const Materials<dim>  &materials,
                       const Function<dim>   &exact,
                       const LinearAlgebra::distributed::Vector<double> &u_h)
   {
     const VolumetricStrainField<dim> volumetric_strain(
-      mapping, dof_handler, material.volumetric_strain(), u_h);
+      mapping, dof_handler, materials, u_h);
 
     const QGauss<dim>                    quadrature(4);
     FEValues<dim>                        fe_values(mapping,
@@ -74,6 +74,7 @@ namespace Friction
         if (cell->is_locally_owned())
           {
             fe_values.reinit(cell);
+            const Material &material = materials.of(cell);
             fe_values[displacement].get_function_symmetric_gradients(u_h,
                                                                      strains);
             for (const unsigned int q : fe_values.quadrature_point_indices())
@@ -85,7 +86,7 @@ namespace Friction
                 const SymmetricTensor<2, dim> e =
                   symmetrize(gradient) - strains[q];
                 const double theta = trace(gradient) -
-                  volumetric_strain.value(cell, trace(strains[q]));
+                  volumetric_strain.value(cell, material, trace(strains[q]));
                 square += (material.lambda() * theta * theta +
                            2. * material.mu() * (e * e)) *
                   fe_values.JxW(q);
@@ -113,13 +114,13 @@ namespace Friction
   template ExactError
   compute_exact_error(const Mapping<2> &,
                       const DoFHandler<2> &,
-                      const Material &,
+                      const Materials<2> &,
                       const Function<2> &,
                       const LinearAlgebra::distributed::Vector<double> &);
   template ExactError
   compute_exact_error(const Mapping<3> &,
                       const DoFHandler<3> &,
-                      const Material &,
+                      const Materials<3> &,
                       const Function<3> &,
                       const LinearAlgebra::distributed::Vector<double> &);
 } // namespace Friction

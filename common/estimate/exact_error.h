@@ -1,7 +1,7 @@
 #ifndef friction_estimate_exact_error_h
 #define friction_estimate_exact_error_h
 
-#include <common/parameters/material.h>
+#include <common/scene/materials.h>
 
 #include <deal.II/base/function.h>
 
@@ -45,7 +45,7 @@ namespace Friction
   ExactError compute_exact_error(
     const dealii::Mapping<dim>                               &mapping,
     const dealii::DoFHandler<dim>                            &dof_handler,
-    const Material                                           &material,
+    const Materials<dim>                                     &materials,
     const dealii::Function<dim>                              &exact,
     const dealii::LinearAlgebra::distributed::Vector<double> &displacement);
 } // namespace Friction

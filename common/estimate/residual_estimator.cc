@@ -281,8 +281,10 @@ namespace Friction
 
       double square_of_rounding(const CellIterator &cell) const;
 
-      Tensor<1, dim> stress_times_normal(const Tensor<2, dim> &gradient,
-                                         const double volumetric_strain,
+      // The stress in a cell of this material, times a normal.
+      Tensor<1, dim> stress_times_normal(const CellIterator   &cell,
+                                         const Material       &material,
+                                         const Tensor<2, dim> &gradient,
                                          const Tensor<1, dim> &normal) const;
 
       const DoFHandler<dim>       &dof_handler;
@@ -291,9 +293,6 @@ namespace Friction
       const EstimatorContact      &contact;
 
       const VolumetricStrainField<dim> volumetric_strain;
-
-      // Turns squared stresses into energies.
-      const double scaling;
 
       // Two points per direction integrate the residuals of Q1 elements exactly
       // on parallelograms, and data with an error that is of higher order.
@@ -326,9 +325,7 @@ namespace Friction
       , problem(problem)
       , displacement(displacement)
       , contact(contact)
-      , volumetric_strain(
-          mapping, dof_handler, problem.volumetric_strain, displacement)
-      , scaling(1. / (2. * problem.mu))
+      , volumetric_strain(mapping, dof_handler, problem.materials, displacement)
       , quadrature(2)
       , face_quadrature(2)
       , vertices(dof_handler.get_triangulation().get_vertices())
@@ -444,7 +441,7 @@ namespace Friction
       for (const unsigned int v : cell->vertex_indices())
         for (unsigned int c = 0; c < dim; ++c)
           u = std::max(u, std::abs(displacements[cell->vertex_index(v)][c]));
-      return 1e-18 * 2. * problem.mu * u * u *
+      return 1e-18 * 2. * problem.materials.of(cell).mu() * u * u *
         std::pow(cell->diameter(), dim - 2);
     }
 
@@ -464,12 +461,14 @@ namespace Friction
 
     template <int dim>
     Tensor<1, dim>
-    Estimator<dim>::stress_times_normal(const Tensor<2, dim> &gradient,
-                                        const double          volumetric_strain,
+    Estimator<dim>::stress_times_normal(const CellIterator   &cell,
+                                        const Material       &material,
+                                        const Tensor<2, dim> &gradient,
                                         const Tensor<1, dim> &normal) const
     {
-      return problem.mu * (gradient * normal + normal * gradient) +
-        problem.lambda * volumetric_strain * normal;
+      return material.mu() * (gradient * normal + normal * gradient) +
+        material.lambda() *
+        volumetric_strain.value(cell, material, trace(gradient)) * normal;
     }
 
 
@@ -487,9 +486,11 @@ namespace Friction
     Estimator<dim>::add_cell(const CellIterator    &cell,
                              const CellValues<dim> &values)
     {
-      const double of_gradient = volumetric_strain.is_pointwise()
-        ? problem.lambda + problem.mu
-        : problem.mu;
+      const Material &material = problem.materials.of(cell);
+      const double    lambda = material.lambda(), mu = material.mu();
+      const bool      is_pointwise =
+        material.volumetric_strain() == VolumetricStrain::pointwise;
+      const double of_gradient = is_pointwise ? lambda + mu : mu;
 
       if (problem.body_force != nullptr)
         {
@@ -535,7 +536,7 @@ namespace Friction
                 // Once in the order a, b and once in the order b, a.
                 const Tensor<1, dim> &grad_a = point.unit_gradients[a];
                 const Tensor<1, dim> &grad_b = point.unit_gradients[b];
-                residual += 2. * problem.mu * (grad_a * grad_b) * second +
+                residual += 2. * mu * (grad_a * grad_b) * second +
                   of_gradient *
                     ((second * grad_b) * grad_a + (second * grad_a) * grad_b);
               }
@@ -543,19 +544,19 @@ namespace Friction
 
           const SymmetricTensor<2, dim> strain     = symmetrize(point.gradient);
           const double                  divergence = trace(strain);
-          const double theta = volumetric_strain.value(cell, divergence);
+          const double                  theta =
+            volumetric_strain.value(cell, material, divergence);
           squared_difference +=
             (divergence - theta) * (divergence - theta) * JxW;
-          energy += (2. * problem.mu * (strain * strain) +
-                     problem.lambda * theta * theta) *
-            JxW;
+          energy +=
+            (2. * mu * (strain * strain) + lambda * theta * theta) * JxW;
         }
 
       add(cell,
-          scaling * cell->diameter() * cell->diameter() * squared_residual,
+          cell->diameter() * cell->diameter() * squared_residual / (2. * mu),
           estimate.interior);
-      if (!volumetric_strain.is_pointwise())
-        add(cell, 2. * problem.mu * squared_difference, estimate.interior);
+      if (!is_pointwise)
+        add(cell, 2. * mu * squared_difference, estimate.interior);
     }
 
 
@@ -653,7 +654,9 @@ namespace Friction
                              const CellIterator    &neighbor,
                              const CellValues<dim> &neighbor_values)
     {
-      const OnFace<Point<dim>> there = face_in_neighbor(cell, f, neighbor);
+      const OnFace<Point<dim>> there    = face_in_neighbor(cell, f, neighbor);
+      const Material          &material = problem.materials.of(cell),
+                     &other_material    = problem.materials.of(neighbor);
 
       double squared_jump = 0.;
       for (unsigned int q = 0; q < face_quadrature.size(); ++q)
@@ -667,19 +670,21 @@ namespace Friction
           const Tensor<1, dim> &conormal = point.unit_gradients[f / 2];
           const double          length   = conormal.norm();
 
-          const Tensor<2, dim> jump = point.gradient - neighbor_point.gradient;
-          squared_jump += stress_times_normal(
-                            jump,
-                            volumetric_strain.jump(cell, neighbor, trace(jump)),
-                            conormal / length)
-                            .norm_square() *
-            length * point.determinant * face_quadrature.weight(q);
+          const Tensor<1, dim> normal = conormal / length;
+          const Tensor<1, dim> jump =
+            stress_times_normal(cell, material, point.gradient, normal) -
+            stress_times_normal(
+              neighbor, other_material, neighbor_point.gradient, normal);
+          squared_jump += jump.norm_square() * length * point.determinant *
+            face_quadrature.weight(q);
         }
 
-      const double diameter = cell->face(f)->diameter();
+      const double mu = std::max(material.mu(), other_material.mu());
+      const double share =
+        0.5 * cell->face(f)->diameter() * squared_jump / (2. * mu);
       for (const CellIterator &side : {cell, neighbor})
         if (side->is_locally_owned())
-          add(side, 0.5 * scaling * diameter * squared_jump, estimate.jumps);
+          add(side, share, estimate.jumps);
     }
 
 
@@ -725,6 +730,7 @@ namespace Friction
           prescribed->second->vector_value_list(points, tractions);
         }
 
+      const Material                    &material = problem.materials.of(cell);
       double                             squared_residual = 0.;
       std::array<double, n_face_corners> JxW;
       for (unsigned int q = 0; q < face_quadrature.size(); ++q)
@@ -742,16 +748,14 @@ namespace Friction
             for (unsigned int c = 0; c < dim; ++c)
               residual[c] = tractions[q](c);
           residual -= stress_times_normal(
-            point.gradient,
-            volumetric_strain.value(cell, trace(point.gradient)),
-            conormal / length);
+            cell, material, point.gradient, conormal / length);
           for (unsigned int c = 0; c < dim; ++c)
             if (mask[c])
               residual[c] = 0.;
           squared_residual += residual.norm_square() * JxW[q];
         }
       add(cell,
-          scaling * cell->face(f)->diameter() * squared_residual,
+          cell->face(f)->diameter() * squared_residual / (2. * material.mu()),
           on_contact_boundary ? estimate.contact : estimate.tractions);
 
       if (on_contact_boundary && contact.normal != nullptr &&

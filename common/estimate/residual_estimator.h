@@ -1,7 +1,7 @@
 #ifndef friction_estimate_residual_estimator_h
 #define friction_estimate_residual_estimator_h
 
-#include <common/parameters/material.h>
+#include <common/scene/materials.h>
 
 #include <deal.II/base/function.h>
 #include <deal.II/base/types.h>
@@ -25,12 +25,13 @@ namespace Friction
   template <int dim>
   struct EstimatorProblem
   {
-    /// Lamé's constants, in the units of stress (2D: plane strain).
-    double lambda = 0.;
-    double mu     = 0.;
+    /** A body without loads, held nowhere. */
+    explicit EstimatorProblem(const Materials<dim> &materials)
+      : materials(materials)
+    {}
 
-    /// The volumetric strain that lambda is multiplied with.
-    VolumetricStrain volumetric_strain = VolumetricStrain::pointwise;
+    /// What the body is made of (2D: plane strain).
+    Materials<dim> materials;
 
     /// Force per volume; none if not given.
     const dealii::Function<dim> *body_force = nullptr;
@@ -121,6 +122,9 @@ namespace Friction
    * contact; Krause, Veeser and Walloth, Numer. Math. 130, 2015, for the
    * distinction between the discrete contact force and the boundary stress).
    * $p_h=-t_h\cdot n$.
+   *
+   * Where materials meet the $\mu$ of an edge is the larger one of both sides
+   * (Bernardi and Verfürth, Numer. Math. 85, 2000).
    *
    * The factor $1/(2\mu)$ turns squared stresses into energies, so the relative
    * estimate does not depend on the units of the scene. With it rather than

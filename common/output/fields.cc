@@ -161,20 +161,20 @@ namespace Friction
     // their corners, by a few products: FEValues would take ten times as long.
     template <int dim>
     VtuPiece
-    piece_of_body(const LevelFields<dim> &fields, const Material &material)
+    piece_of_body(const LevelFields<dim> &fields,
+                  const Materials<dim>   &materials)
     {
       const DoFHandler<dim>           &dof_handler = fields.dof_handler;
       const VolumetricStrainField<dim> volumetric_strain(
-        fields.mapping,
-        dof_handler,
-        material.volumetric_strain(),
-        fields.displacement);
+        fields.mapping, dof_handler, materials, fields.displacement);
 
       VtuPiece piece(dim == 2 ? VtuPiece::Cell::quadrilateral
                               : VtuPiece::Cell::hexahedron);
       piece.point_fields.push_back({"displacement", true, {}});
       for (const std::string &name : stress_names(dim))
         piece.cell_fields.push_back({name, false, {}});
+      if (!materials.is_homogeneous())
+        piece.cell_fields.push_back({"youngs_modulus", false, {}});
       if (fields.cell_errors != nullptr)
         piece.cell_fields.push_back({"estimated_error", false, {}});
 
@@ -205,13 +205,17 @@ namespace Friction
 
             const Tensor<2, dim> gradient = derivatives_in_the_middle(values) *
               invert(derivatives_in_the_middle(places));
-            const auto stresses =
-              stress_values(gradient,
-                            volumetric_strain.value(cell, trace(gradient)),
-                            material);
+            const Material &material = materials.of(cell);
+            const auto      stresses = stress_values(
+              gradient,
+              volumetric_strain.value(cell, material, trace(gradient)),
+              material);
             for (unsigned int i = 0; i < stresses.size(); ++i)
               piece.cell_fields[i].values.push_back(
                 static_cast<float>(stresses[i]));
+            if (!materials.is_homogeneous())
+              piece.cell_fields[stresses.size()].values.push_back(
+                static_cast<float>(material.youngs_modulus()));
             if (fields.cell_errors != nullptr)
               piece.cell_fields.back().values.push_back(
                 (*fields.cell_errors)(cell->active_cell_index()));
@@ -271,11 +275,11 @@ namespace Friction
 
   template <int dim>
   FieldWriter<dim>::FieldWriter(const RunDirectory      &directory,
-                                const Material          &material,
+                                const Materials<dim>    &materials,
                                 const types::boundary_id contact_boundary,
                                 const FieldFormat        format)
     : directory(directory)
-    , material(material)
+    , materials(materials)
     , contact_boundary(contact_boundary)
     , format(format)
   {}
@@ -304,7 +308,7 @@ namespace Friction
   FieldWriter<dim>::write_body(const unsigned int      level,
                                const LevelFields<dim> &fields)
   {
-    const VtuPiece piece = piece_of_body(fields, material);
+    const VtuPiece piece = piece_of_body(fields, materials);
     if (format == FieldFormat::hdf5)
       write_body_hdf5(level, fields, piece);
     else

@@ -19,8 +19,8 @@
 #include <common/output/history.h>
 #include <common/output/run_directory.h>
 #include <common/output/vtu_file.h>
-#include <common/parameters/material.h>
 #include <common/parameters/parameters.h>
+#include <common/scene/materials.h>
 
 #include <string>
 #include <utility>
@@ -96,7 +96,7 @@ namespace Friction
      * @param format           of the files of the body.
      */
     FieldWriter(const RunDirectory              &directory,
-                const Material                  &material,
+                const Materials<dim>            &materials,
                 const dealii::types::boundary_id contact_boundary,
                 const FieldFormat                format = FieldFormat::vtu);
 
@@ -144,7 +144,7 @@ namespace Friction
                            const MPI_Comm       communicator) const;
 
     const RunDirectory               directory;
-    const Material                   material;
+    const Materials<dim>             materials;
     const dealii::types::boundary_id contact_boundary;
     const FieldFormat                format;
 

@@ -61,7 +61,7 @@ namespace Friction
               version,
               communicator)
     , fields(directory,
-             scene.material(),
+             scene.materials(),
              scene.contact_boundary_id(),
              parameters.output.format)
     , verification(directory)
@@ -231,7 +231,7 @@ namespace Friction
     if (const auto exact = nest.scene().exact_displacement())
       add_exact_error(compute_exact_error(discretization.mapping(),
                                           discretization.dof_handler(),
-                                          nest.scene().material(),
+                                          nest.scene().materials(),
                                           *exact,
                                           nest.displacement()),
                       parameters.refinement.strategy ==

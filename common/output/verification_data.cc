@@ -179,7 +179,8 @@ namespace Friction
     void
     add_cells(ProblemTables &tables, const Discretization<dim> &discretization)
     {
-      const Scene<dim>     &scene = discretization.scene();
+      const Scene<dim>     &scene     = discretization.scene();
+      const Materials<dim> &materials = scene.materials();
       const QGauss<dim>     cell_points(2);
       const QGauss<dim - 1> face_points(4);
       for (const auto &cell :
@@ -194,6 +195,11 @@ namespace Friction
                 corners.push_back(cell->vertex(v));
               }
             tables.add_numbers("cells", nodes);
+            if (!materials.is_homogeneous())
+              {
+                tables.add_numbers("cell_ids", {cell->material_id()});
+                tables.add_numbers("cell_regions", {materials.region(cell)});
+              }
             if (scene.body_force() != nullptr)
               add_load_values(tables,
                               "body_force",
@@ -323,6 +329,24 @@ namespace Friction
 
 
 
+    // By number of the region, unless there is none.
+    template <int dim>
+    void
+    add_materials(ProblemTables &tables, const Materials<dim> &materials)
+    {
+      if (!materials.is_homogeneous())
+        for (const Material &material : materials.of_regions())
+          tables.add_vector<3>(
+            "materials",
+            Tensor<1, 3>({material.youngs_modulus(),
+                          material.poisson_ratio(),
+                          material.volumetric_strain() == VolumetricStrain::mean
+                            ? 1.
+                            : 0.}));
+    }
+
+
+
     template <int dim>
     void
     add_obstacle(ProblemTables &tables, const Obstacle<dim> &obstacle)
@@ -350,7 +374,7 @@ namespace Friction
                      const unsigned int  level,
                      const Scene<dim>   &scene)
     {
-      const Material   &material = scene.material();
+      const Material   &material = scene.materials().base();
       const FrictionLaw law      = scene.friction_law();
       const bool        has_boundary =
         scene.contact_boundary_id() != numbers::invalid_boundary_id;
@@ -404,6 +428,7 @@ namespace Friction
       for (const ProblemTables &part :
            Utilities::MPI::gather(communicator, own))
         all.append(part);
+      add_materials(all, scene.materials());
       add_obstacle(all, scene.obstacle());
 
       // HDF5 does not say in one sentence that the disk is full, see History.

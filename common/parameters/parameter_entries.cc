@@ -161,6 +161,17 @@ namespace Friction
        "Of the discrete body. 'mean': its mean over each cell, for nearly "
        "incompressible materials, from a Poisson ratio of about 0.45 on, where "
        "'pointwise' makes the body too stiff."},
+      {"Material",
+       "Regions",
+       "",
+       text,
+       "Other materials in parts of the body, 'region: E, nu', separated by "
+       "';', with Young's modulus and the Poisson ratio as constant "
+       "expressions, and ', mean' or ', pointwise' behind them if the "
+       "volumetric strain is another one there. A region is a physical id or a "
+       "name of the mesh file, or 'where' and a condition in x, y (and z) that "
+       "is asked in the middle of each cell, as in 'where y > 0.9: 100*E, nu'. "
+       "If a cell is in several, the last counts."},
 
       {"Obstacle",
        "Kind",

@@ -468,6 +468,66 @@ namespace Friction
 
 
 
+    void
+    check_poisson_ratio(const double nu, const std::string &sentence)
+    {
+      if (!(nu > -1. && nu < .5))
+        throw InputError(sentence +
+                         ", but it must lie strictly between -1 and 1/2.");
+    }
+
+
+
+    VolumetricStrain
+    volumetric_strain(const std::string &name)
+    {
+      return name == "mean" ? VolumetricStrain::mean
+                            : VolumetricStrain::pointwise;
+    }
+
+
+
+    // Other materials in parts of the body.
+    void
+    read_regions(const std::string &usual_kind,
+                 Values            &values,
+                 Parameters        &parameters)
+    {
+      const std::string path    = "Material/Regions";
+      const std::string subject = values.subject(path);
+      for (const ConditionText &text :
+           read_conditions(path, "region: E, nu", values))
+        {
+          const auto       &numbers = text.components;
+          const std::string here =
+            subject + ": region '" + excerpt(text.key) + "' has ";
+          if (numbers.size() != 2 && numbers.size() != 3)
+            throw InputError(here + wrong_number(2, numbers.size(), "numbers"));
+          if (numbers.size() == 3 && numbers[2] != "mean" &&
+              numbers[2] != "pointwise")
+            throw InputError(here + "'" + excerpt(numbers[2]) +
+                             "' as volumetric strain; take 'mean' or "
+                             "'pointwise'.");
+          const double E = parameters.expressions.evaluate(numbers[0], subject);
+          const double nu =
+            parameters.expressions.evaluate(numbers[1], subject);
+          if (!(E >= 1. / largest_number && E <= largest_number))
+            throw InputError(here + excerpt(numbers[0]) +
+                             " as Young's modulus, which must be positive and "
+                             "between 1e-30 and 1e30.");
+          check_poisson_ratio(nu,
+                              here + excerpt(numbers[1]) + " as Poisson ratio");
+          parameters.regions.push_back(
+            {text.key,
+             Material(E,
+                      nu,
+                      volumetric_strain(numbers.size() == 3 ? numbers[2]
+                                                            : usual_kind))});
+        }
+    }
+
+
+
     // A number, or the word that leaves it to the estimated error.
     void
     read_inner_tolerance(Values &values, Parameters &parameters)
@@ -650,20 +710,15 @@ namespace Friction
     const double E  = values.positive_number("Material/Young's modulus");
     const double nu = values.number("Material/Poisson ratio");
     const double F  = values.number("Contact/Friction coefficient");
-    if (!(nu > -1. && nu < .5))
-      throw InputError(values.subject("Material/Poisson ratio") + " is " +
-                       excerpt(values.get("Material/Poisson ratio")) +
-                       ", but it must lie strictly between -1 and 1/2.");
+    check_poisson_ratio(nu,
+                        values.subject("Material/Poisson ratio") + " is " +
+                          excerpt(values.get("Material/Poisson ratio")));
     if (!(F >= 0.))
       throw InputError(values.subject("Contact/Friction coefficient") + " is " +
                        excerpt(values.get("Contact/Friction coefficient")) +
                        ", but it must not be negative.");
-    parameters.material =
-      Material(E,
-               nu,
-               values.get("Material/Volumetric strain") == "mean"
-                 ? VolumetricStrain::mean
-                 : VolumetricStrain::pointwise);
+    const std::string kind = values.get("Material/Volumetric strain");
+    parameters.material    = Material(E, nu, volumetric_strain(kind));
 
     std::map<std::string, double> constants = {
       {"E", E},
@@ -681,6 +736,8 @@ namespace Friction
       Expressions(constants,
                   read_names("Scene/Definitions", constants, values),
                   values.subject("Scene/Definitions"));
+
+    read_regions(kind, values, parameters);
 
     const auto vector_of = [&](const std::string &path) {
       return read_vector(
@@ -853,7 +910,9 @@ namespace Friction
         (values.get("Solver/Local solver") == "secular equation"
            ? LocalSolver::secular_equation
            : LocalSolver::uzawa);
-      const unsigned int sweeps = enough_sweeps(parameters.material);
+      unsigned int sweeps = enough_sweeps(parameters.material);
+      for (const auto &region : parameters.regions)
+        sweeps = std::max(sweeps, enough_sweeps(region.material));
       solver.smoothing_steps = values.steps("Solver/Smoothing steps", sweeps);
       solver.coarse_smoothing_steps =
         values.steps("Solver/Coarse smoothing steps", std::max(6u, sweeps));

@@ -203,6 +203,14 @@ namespace Friction
       Verbosity   verbosity    = Verbosity::cycles;
     };
 
+    /// A part of the body that has another material: a physical id, a name, or
+    /// 'where' and an expression.
+    struct RegionText
+    {
+      std::string key;
+      Material    material;
+    };
+
     /// What is strange about the scene but no error: entries that it does not
     /// use. Each a sentence.
     std::vector<std::string> warnings;
@@ -210,8 +218,13 @@ namespace Friction
     std::string name; ///< stem of the scene file's name
     std::string text; ///< all parameters in effect, in the file format
 
-    Scene              scene;
-    Material           material = Material(1., .3);
+    Scene    scene;
+    Material material = Material(1., .3);
+
+    /// In the order of the file; of several that a cell lies in the last
+    /// counts.
+    std::vector<RegionText> regions;
+
     Obstacle           obstacle;
     BoundaryConditions boundary_conditions;
     Contact            contact;

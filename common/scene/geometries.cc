@@ -538,6 +538,10 @@ namespace Friction
         }
       GridGenerator::subdivided_hyper_rectangle(
         triangulation, subdivisions, Point<dim>(), corner, true);
+
+      // deal.II numbers not only the sides, but quarters of the body, too.
+      for (const auto &cell : triangulation.active_cell_iterators())
+        cell->set_material_id(0);
       if (scene.distortion > 0.)
         distort(scene.distortion, cell_size, triangulation);
     }

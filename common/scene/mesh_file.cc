@@ -226,12 +226,17 @@ namespace Friction
       cells.begin(), cells.end(), [&](const Cell &a, const Cell &b) {
         return sorted(a) < sorted(b);
       });
-    cells.erase(std::unique(cells.begin(),
-                            cells.end(),
-                            [&](const Cell &a, const Cell &b) {
-                              return sorted(a) == sorted(b);
-                            }),
-                cells.end());
+    const auto is_same = [&](const Cell &a, const Cell &b) {
+      return sorted(a) == sorted(b);
+    };
+    for (auto first = cells.begin(); first != cells.end();)
+      {
+        auto next = first + 1;
+        for (; next != cells.end() && is_same(*first, *next); ++next)
+          further_ids[first->number].push_back(next->physical_id);
+        first = next;
+      }
+    cells.erase(std::unique(cells.begin(), cells.end(), is_same), cells.end());
     std::sort(cells.begin(), cells.end(), [](const Cell &a, const Cell &b) {
       return a.number < b.number;
     });
@@ -449,19 +454,31 @@ namespace Friction
     for (const auto &[key, id] : file.names)
       if (key.first == dim - 1)
         ids_of_names[key.second] = id;
+      else if (key.first == dim)
+        ids_of_cell_names[key.second] = id;
   }
 
 
 
   template <int dim>
-  std::string
-  MeshFile<dim>::names() const
+  int
+  MeshFile<dim>::id_of_name(const std::map<std::string, int> &ids,
+                            const std::string                &kind,
+                            const std::string                &name,
+                            const std::string                &where) const
   {
-    std::string text;
-    for (const auto &[name, id] : ids_of_names)
-      text +=
-        (text.empty() ? "'" : ", '") + name + "' (" + std::to_string(id) + ")";
-    return text;
+    const auto found = ids.find(name);
+    if (found != ids.end())
+      return found->second;
+    std::string known;
+    for (const auto &[other, id] : ids)
+      known += (known.empty() ? "'" : ", '") + other + "' (" +
+        std::to_string(id) + ")";
+    throw InputError(where + ": '" + excerpt(name) +
+                     "' is neither a number nor the name of a physical " +
+                     kind + " of the mesh file, which has " +
+                     (known.empty() ? "no names" : excerpt(known, 300)) +
+                     "; correct it.");
   }
 
 
@@ -471,16 +488,19 @@ namespace Friction
   MeshFile<dim>::boundary_id(const std::string &name,
                              const std::string &where) const
   {
-    const auto found = ids_of_names.find(name);
-    if (found == ids_of_names.end())
-      throw InputError(
-        where + ": '" + excerpt(name) +
-        "' is neither a number nor the name of a " +
-        (dim == 2 ? "physical curve" : "physical surface") +
-        " of the mesh file, which has " +
-        (ids_of_names.empty() ? "no names" : excerpt(names(), 300)) +
-        "; correct it.");
-    return found->second;
+    return id_of_name(
+      ids_of_names, dim == 2 ? "curve" : "surface", name, where);
+  }
+
+
+
+  template <int dim>
+  types::material_id
+  MeshFile<dim>::material_id(const std::string &name,
+                             const std::string &where) const
+  {
+    return id_of_name(
+      ids_of_cell_names, dim == 2 ? "surface" : "volume", name, where);
   }
 
 
@@ -496,8 +516,33 @@ namespace Friction
 
 
   template <int dim>
+  int
+  MeshFile<dim>::physical_id(
+    const Cell &cell, const std::set<types::material_id> &used_materials) const
+  {
+    const auto further = further_ids.find(cell.number);
+    if (further == further_ids.end())
+      return cell.physical_id;
+    int id = cell.physical_id;
+    for (const int other : further->second)
+      if (other != id && used_materials.count(other) > 0)
+        {
+          if (used_materials.count(id) > 0)
+            fail("has a cell " + place(cell) + " in the groups " +
+                 std::to_string(id) + " and " + std::to_string(other) +
+                 ", and the scene speaks of both; let it be in one of them "
+                 "only.");
+          id = other;
+        }
+    return id;
+  }
+
+
+
+  template <int dim>
   void
   MeshFile<dim>::make(const std::set<types::boundary_id> &used_ids,
+                      const std::set<types::material_id> &used_materials,
                       Triangulation<dim>                 &triangulation) const
   {
     for (const auto &[id, inner] : inner_faces)
@@ -516,7 +561,7 @@ namespace Friction
       {
         data[c].vertices.assign(cells[c].vertices.begin(),
                                 cells[c].vertices.end());
-        data[c].material_id = cells[c].physical_id;
+        data[c].material_id = physical_id(cells[c], used_materials);
       }
     GridTools::consistently_order_cells(data);
     triangulation.create_triangulation(vertices, data, SubCellData());

@@ -36,11 +36,13 @@ namespace Friction
     /** Reads and checks. Throws InputError, with @p where as its beginning. */
     MeshFile(const std::string &path, const std::string &where);
 
-    /**
-     * The physical id of the faces, or of the cells, with a name; throws
-     * InputError if there is none.
-     */
+    /** The physical id of the faces with a name; throws InputError if there is
+     * none. */
     dealii::types::boundary_id boundary_id(const std::string &name,
+                                           const std::string &where) const;
+
+    /** The same of cells. */
+    dealii::types::material_id material_id(const std::string &name,
                                            const std::string &where) const;
 
     /**
@@ -48,12 +50,12 @@ namespace Friction
      * @param used_ids  the boundary ids that the scene speaks of. A face in two
      *   groups has the one of them that is used; that both are is an error, and
      *   so is a group that is used and lies on the boundary in part only.
+     * @param used_materials  the physical ids of cells that the scene speaks
+     *   of; the same holds for a cell in two groups.
      */
     void make(const std::set<dealii::types::boundary_id> &used_ids,
+              const std::set<dealii::types::material_id> &used_materials,
               dealii::Triangulation<dim>                 &triangulation) const;
-
-    /** The names of groups of faces, separated by commas, each with its id. */
-    std::string names() const;
 
     /** Whether a group has faces, none of which lies on the boundary. */
     bool lies_inside(const dealii::types::boundary_id id) const;
@@ -92,6 +94,15 @@ namespace Friction
     void find_boundary();
     void take_groups(const GmshFile &file);
 
+    int physical_id(
+      const Cell                                 &cell,
+      const std::set<dealii::types::material_id> &used_materials) const;
+
+    int id_of_name(const std::map<std::string, int> &ids,
+                   const std::string                &kind,
+                   const std::string                &name,
+                   const std::string                &where) const;
+
     std::string place(const Cell &cell) const;
     std::string place(const Face &face) const;
 
@@ -101,7 +112,10 @@ namespace Friction
     std::vector<Face>                                        boundary;
     std::vector<std::pair<Face, dealii::types::boundary_id>> groups;
     std::map<dealii::types::boundary_id, InnerFaces>         inner_faces;
-    std::map<std::string, int>                               ids_of_names;
+    std::map<std::string, int> ids_of_names, ids_of_cell_names;
+
+    // Of cells that are in several groups: the others, by number of the cell.
+    std::map<std::size_t, std::vector<int>> further_ids;
   };
 } // namespace Friction
 

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <set>
 #include <sstream>
 
@@ -79,6 +80,27 @@ namespace Friction
 
 
   template <int dim>
+  types::material_id
+  Scene<dim>::read_material_id(const std::string &text,
+                               const std::string &where) const
+  {
+    const bool is_number =
+      !text.empty() && std::all_of(text.begin(), text.end(), ::isdigit);
+    if (is_number && text.size() <= 9)
+      return std::stoi(text);
+    if (mesh_file != nullptr && !is_number)
+      return mesh_file->material_id(text, where);
+    throw InputError(where + ": '" + excerpt(text) +
+                     "' is no region; give the physical id of cells" +
+                     (is_number ? ""
+                                : ", the name of a group of a mesh file, or "
+                                  "'where' and a condition") +
+                     ".");
+  }
+
+
+
+  template <int dim>
   std::shared_ptr<const Function<dim>>
   Scene<dim>::make_function(const std::vector<std::string> &components,
                             const std::string              &where) const
@@ -100,6 +122,7 @@ namespace Friction
   template <int dim>
   Scene<dim>::Scene(const Parameters &parameters)
     : parameters(parameters)
+    , the_materials(parameters.material)
     , rotation(unit_symmetric_tensor<dim>())
   {
     const std::string here = subject();
@@ -158,6 +181,7 @@ namespace Friction
     }
 
     mesh_file = read_mesh_file();
+    read_regions();
     if (!parameters.contact.boundary.empty())
       contact_id = read_boundary_id(parameters.contact.boundary,
                                     here + "'Contact/Boundary id'");
@@ -282,6 +306,29 @@ namespace Friction
 
 
 
+  // A region is 'where' and an expression, or what a mesh file calls it.
+  template <int dim>
+  void
+  Scene<dim>::read_regions()
+  {
+    const std::string where = subject() + "'Material/Regions'";
+    const std::string word  = "where";
+    for (const auto &region : parameters.regions)
+      if (region.key.compare(0, word.size(), word) == 0 &&
+          region.key.size() > word.size() &&
+          std::string(" \t(").find(region.key[word.size()]) !=
+            std::string::npos)
+        the_materials.add_region(
+          make_function({Utilities::trim(region.key.substr(word.size()))},
+                        where),
+          region.material);
+      else
+        the_materials.add_region(read_material_id(region.key, where),
+                                 region.material);
+  }
+
+
+
   template <int dim>
   std::shared_ptr<const MeshFile<dim>>
   Scene<dim>::read_mesh_file() const
@@ -339,7 +386,7 @@ namespace Friction
           used.insert(condition.boundary_id);
         for (const auto &condition : tractions)
           used.insert(condition.boundary_id);
-        mesh_file->make(used, mesh);
+        mesh_file->make(used, the_materials.ids(), mesh);
       }
     else
       make_geometry(parameters.scene, here, mesh);
@@ -367,6 +414,7 @@ namespace Friction
                                  : ", but the mesh has only ") +
         known + "; correct it.");
     };
+    check_regions(mesh, here);
     for (const auto &condition : dirichlet)
       check_id(condition.boundary_id, "Boundary conditions/Displacement");
     for (const auto &condition : tractions)
@@ -376,6 +424,33 @@ namespace Friction
     check_pinned_points(mesh, here);
     check_that_body_can_be_held(*this, mesh, here);
     mesh_file.reset();
+  }
+
+
+
+  // What a condition says may only become true on a finer mesh; an id must be
+  // there.
+  template <int dim>
+  void
+  Scene<dim>::check_regions(const Triangulation<dim> &mesh,
+                            const std::string        &here) const
+  {
+    if (the_materials.is_homogeneous())
+      return;
+    std::set<types::material_id> found;
+    for (const auto &cell : mesh.active_cell_iterators())
+      found.insert(cell->material_id());
+    for (const types::material_id id : the_materials.ids())
+      if (found.count(id) == 0)
+        {
+          std::string known;
+          for (const types::material_id other : found)
+            known += (known.empty() ? "" : ", ") + std::to_string(other);
+          throw InputError(here + "'Material/Regions' names the physical id " +
+                           std::to_string(id) +
+                           ", but the cells of the mesh have only " +
+                           excerpt(known, 100) + "; correct it.");
+        }
   }
 
 
@@ -473,7 +548,9 @@ namespace Friction
       return "Warning: there is no obstacle, so there will be no contact; if "
              "there should be, set 'Obstacle/Kind'.";
 
-    const double bound = eck_bound(dim, material().poisson_ratio());
+    double bound = std::numeric_limits<double>::max();
+    for (const Material &material : the_materials.of_regions())
+      bound = std::min(bound, eck_bound(dim, material.poisson_ratio()));
     if (friction_coefficient() <= bound)
       return "";
     std::ostringstream text;

@@ -1,8 +1,8 @@
 #ifndef friction_scene_scene_h
 #define friction_scene_scene_h
 
-#include <common/parameters/material.h>
 #include <common/parameters/parameters.h>
+#include <common/scene/materials.h>
 #include <common/scene/mesh_file.h>
 #include <common/scene/obstacle.h>
 
@@ -107,10 +107,11 @@ namespace Friction
       return "scene '" + parameters.name + "': ";
     }
 
-    const Material &
-    material() const
+    /// What the body is made of.
+    const Materials<dim> &
+    materials() const
     {
-      return parameters.material;
+      return the_materials;
     }
 
     const std::vector<DirichletCondition<dim>> &
@@ -207,13 +208,21 @@ namespace Friction
     std::string warning() const;
 
   private:
+    void read_regions();
+
     /// The coarse mesh on one process, checked.
     void make_serial_mesh(Triangulation<dim> &mesh) const;
 
     void check_pinned_points(const Triangulation<dim> &mesh,
                              const std::string        &here) const;
 
+    void check_regions(const Triangulation<dim> &mesh,
+                       const std::string        &here) const;
+
     types::boundary_id read_boundary_id(const std::string &text,
+                                        const std::string &where) const;
+
+    types::material_id read_material_id(const std::string &text,
                                         const std::string &where) const;
 
     /// The mesh file, or null if the body comes from elsewhere.
@@ -225,6 +234,7 @@ namespace Friction
     mutable std::shared_ptr<const MeshFile<dim>> mesh_file;
 
     types::boundary_id contact_id = numbers::invalid_boundary_id;
+    Materials<dim>     the_materials;
     Tensor<2, dim>     rotation;
     Obstacle<dim>      the_obstacle;
     std::vector<DirichletCondition<dim>> dirichlet;

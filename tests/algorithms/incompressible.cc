@@ -33,7 +33,7 @@ namespace
   {
     const Discretization<2> &d        = iteration.discretization();
     const Function<2>       &exact    = *iteration.scene().exact_displacement();
-    const Material          &material = iteration.scene().material();
+    const Material          &material = iteration.scene().materials().base();
     const bool mean = material.volumetric_strain() == VolumetricStrain::mean;
 
     const QGauss<2>                    quadrature(4);

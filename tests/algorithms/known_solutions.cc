@@ -238,8 +238,9 @@ namespace
                 const SymmetricTensor<2, 2> e =
                   symmetrize(gradient) - strains[q];
                 energy_error +=
-                  (iteration.scene().material().lambda() * trace(e) * trace(e) +
-                   2. * iteration.scene().material().mu() * (e * e)) *
+                  (iteration.scene().materials().base().lambda() * trace(e) *
+                     trace(e) +
+                   2. * iteration.scene().materials().base().mu() * (e * e)) *
                   fe_values.JxW(q);
               }
           }

@@ -73,7 +73,7 @@ namespace
           mesh->execute_coarsening_and_refinement();
         }
       discretization.set_up();
-      discretization.assemble(elasticity<dim>(scene.material()));
+      discretization.assemble(elasticity<dim>(scene.materials()));
 
       VectorType         u = admissible_start(discretization);
       ContactState       state(discretization.contact().size(), true);

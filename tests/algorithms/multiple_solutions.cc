@@ -117,7 +117,7 @@ main(int argc, char *argv[])
   scene.make_coarse_mesh(*mesh);
   const Discretized<2> d(scene, *mesh);
   const Node              node      = {d};
-  const auto              solutions = all_solutions(scene.material());
+  const auto              solutions = all_solutions(scene.materials().base());
   check(d.contact().size() == 1, "there is one contact node");
 
   // Each of them satisfies the discrete law.

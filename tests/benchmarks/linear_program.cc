@@ -114,7 +114,8 @@ namespace Benchmark
     FullMatrix<double>                   cell_matrix(n, n);
     dealii::Vector<double>               cell_rhs(n);
     std::vector<types::global_dof_index> indices(n);
-    const double lambda = scene.material().lambda(), mu = scene.material().mu();
+    const double lambda = scene.materials().base().lambda(),
+                 mu     = scene.materials().base().mu();
     for (const auto &cell : dofs.active_cell_iterators())
       if (cell->is_locally_owned())
         {

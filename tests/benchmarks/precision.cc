@@ -250,8 +250,9 @@ namespace Benchmark
     Tensor<2, dim> gradient;
     for (unsigned int c = 0; c < dim; ++c)
       gradient[c] = scene.exact_displacement()->gradient(node.point, c);
-    return -scene.material().lambda() * trace(gradient) -
-      2. * scene.material().mu() * (node.normal() * (gradient * node.normal()));
+    return -scene.materials().base().lambda() * trace(gradient) -
+      2. * scene.materials().base().mu() *
+      (node.normal() * (gradient * node.normal()));
   }
 
 
@@ -396,7 +397,7 @@ namespace Benchmark
       const auto                 error = [&](const VectorType &v) {
         return compute_exact_error(d.mapping(),
                                    d.dof_handler(),
-                                   nest.scene().material(),
+                                   nest.scene().materials().base(),
                                    *nest.scene().exact_displacement(),
                                    v)
           .energy;

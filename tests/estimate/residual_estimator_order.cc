@@ -25,6 +25,8 @@
 #include <iomanip>
 #include <iostream>
 
+#include <tests/support/material_of.h>
+
 using namespace dealii;
 using namespace Friction;
 
@@ -156,9 +158,7 @@ namespace
     constraints.distribute(u);
     constraints.distribute(t);
 
-    EstimatorProblem<dim> problem;
-    problem.lambda           = lambda;
-    problem.mu               = mu;
+    EstimatorProblem<dim> problem(material_of(lambda, mu));
     problem.body_force       = &body_force;
     problem.tractions[1]     = &side;
     problem.contact_boundary = 2;
@@ -284,9 +284,7 @@ namespace
     VectorTools::interpolate(mapping, dof_handler, Symmetric<dim>(), u);
     constraints.distribute(u);
 
-    EstimatorProblem<dim> problem;
-    problem.lambda           = 1.;
-    problem.mu               = 1.;
+    EstimatorProblem<dim> problem(material_of(1., 1.));
     problem.contact_boundary = 2;
     problem.dirichlet[3]     = ComponentMask(dim, true);
     EstimatorContact contact;

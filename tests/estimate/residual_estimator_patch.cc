@@ -17,6 +17,8 @@
 
 #include <iostream>
 
+#include <tests/support/material_of.h>
+
 using namespace dealii;
 using namespace Friction;
 
@@ -122,9 +124,7 @@ namespace
     VectorTools::interpolate(mapping, dof_handler, base_traction, t);
     VectorTools::interpolate(mapping, dof_handler, base_normal, n);
 
-    EstimatorProblem<dim> problem;
-    problem.lambda               = lambda;
-    problem.mu                   = mu;
+    EstimatorProblem<dim> problem(material_of(lambda, mu));
     problem.contact_boundary     = 2;
     problem.friction_coefficient = friction;
     problem.dirichlet[3]         = ComponentMask(dim, true);

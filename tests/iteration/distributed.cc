@@ -88,7 +88,7 @@ namespace
           mesh->execute_coarsening_and_refinement();
         }
       discretization.set_up();
-      discretization.assemble(elasticity<dim>(scene.material()));
+      discretization.assemble(elasticity<dim>(scene.materials()));
       level_hierarchy = std::make_unique<LevelHierarchy<dim>>(
         discretization.dof_handler(),
         discretization.constraints(),

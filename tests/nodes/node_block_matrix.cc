@@ -263,8 +263,8 @@ namespace
     std::vector<types::global_dof_index> indices(
       disc.dof_handler().get_fe().n_dofs_per_cell());
     const FEValuesExtractors::Vector displacement(0);
-    const double                     lambda = problem.scene.material().lambda();
-    const double                     mu     = problem.scene.material().mu();
+    const double lambda = problem.scene.materials().base().lambda();
+    const double mu     = problem.scene.materials().base().mu();
     for (const auto &cell : disc.dof_handler().active_cell_iterators())
       {
         fe_values.reinit(cell);

@@ -652,6 +652,41 @@ class Runner:
                      ['exit status'], result)
 
 
+# Other materials in regions: list 18, what a later round of users asked for.
+R = 'Material/Regions'
+CASES += [
+    (18, 'regions by name and by id', 'mesh',
+     mesh('square-2.2-text', **{R: 'body: 2, .3'}), 'good', []),
+    (18, 'a region that no cell has', 'mesh', mesh('square', **{R: '11: 2, .3'}),
+     'error', ["'Material/Regions' names the physical id 11, but .* only 10;"]),
+    (18, 'a region that is no name', 'mesh',
+     mesh('square-4.1-text', **{R: 'rim: 2, .3'}), 'error',
+     [r"'rim' is neither a number nor the name of a physical surface .* which has "
+      r"'body' \(10\);"]),
+    (18, 'a region without a mesh file', 'moved', {R: 'rim: 2, .3'}, 'error',
+     ["'rim' is no region; give the physical id of cells, .* or 'where'"]),
+    (18, 'a condition', 'moved', {R: 'where x > 1: 2, .3'}, 'good', []),
+    (18, 'a condition that is none', 'moved', {R: 'where x >: 2, .3'}, 'error',
+     ["'Material/Regions': 'x >' cannot be understood"]),
+    (18, 'a condition without a value', 'moved', {R: 'where 1/(x-0.5): 2, .3'},
+     'error', [r"Regions.*'1/\(x-0.5\)'.*0.5"]),
+    (18, 'a modulus is missing', 'moved', {R: 'where x > 1: 2'}, 'error',
+     ["region 'where x > 1' has 1 number.*E, nu"]),
+    (18, 'a modulus is negative', 'moved', {R: '0: -2, .3'}, 'error',
+     ["region '0' has -2 as Young's modulus, which must be positive"]),
+    (18, 'incompressible', 'moved', {R: '0: 2, .5'}, 'error',
+     ["region '0' has .5 as Poisson ratio, .* between -1 and 1/2"]),
+    (18, 'another volumetric strain', 'moved', {R: '0: 2, .3, averaged'}, 'error',
+     ["region '0' has 'averaged' as volumetric strain; take 'mean' or"]),
+    (18, 'a cell in two groups, one of which is a region', 'mesh',
+     mesh('twice', **{R: '7: 2, .3'}), 'good', []),
+    (18, 'a cell in two groups, both of them regions', 'mesh',
+     mesh('twice', **{R: '7: 2, .3; 1: 3, .3'}), 'error',
+     ['has a cell number . around .* in the groups 1 and 7, and the scene speaks of '
+      'both']),
+]
+
+
 def main():
     runner = Runner({2: os.path.abspath(sys.argv[1]), 3: os.path.abspath(sys.argv[2])})
     work = tempfile.mkdtemp()

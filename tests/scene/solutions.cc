@@ -42,9 +42,9 @@ namespace
           gradient[c][d] = (u.value(above, c) - u.value(below, c)) / (2. * h);
         }
     Tensor<2, dim> sigma =
-      scene.material().mu() * (gradient + transpose(gradient));
+      scene.materials().base().mu() * (gradient + transpose(gradient));
     for (unsigned int d = 0; d < dim; ++d)
-      sigma[d][d] += scene.material().lambda() * trace(gradient);
+      sigma[d][d] += scene.materials().base().lambda() * trace(gradient);
     return sigma;
   }
 

@@ -20,7 +20,7 @@ namespace Tests
       : Discretization<dim>(scene, mesh)
     {
       this->set_up();
-      this->assemble(elasticity<dim>(scene.material()));
+      this->assemble(elasticity<dim>(scene.materials()));
     }
   };
 

@@ -280,7 +280,7 @@ namespace Tests
     discretize()
     {
       discretization.set_up();
-      discretization.assemble(elasticity<dim>(scene.material()));
+      discretization.assemble(elasticity<dim>(scene.materials()));
       level_hierarchy = std::make_unique<LevelHierarchy<dim>>(
         discretization.dof_handler(), constraints(), matrix());
     }

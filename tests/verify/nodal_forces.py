@@ -18,7 +18,8 @@ def body_integrals(level):
 
     Linear elasticity, in two dimensions plane strain: sigma = lambda theta I + 2 mu eps
     with theta the divergence of the displacement, or its mean over the cell."""
-    E, nu, dim = level.youngs_modulus, level.poisson_ratio, level.dim
+    dim = level.dim
+    E, nu, averaged = level.materials[level.cell_regions].T
     lame, mu = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
     X, U = level.vertices[level.cells], level.displacement[level.cells]
     points, weights = gauss_points(2, dim)
@@ -39,21 +40,24 @@ def body_integrals(level):
         mean_gradient = mean_gradient + dx[:, None, None] * G
 
     forces, diagonal, energy = 0, 0, 0.
-    averaged = level.volumetric_strain == "mean"
     for G, gradient, dx in at_points:
         strain = (gradient + gradient.transpose(0, 2, 1)) / 2
         theta = np.trace(strain, axis1=1, axis2=2)
         H = G
-        if averaged:
-            theta, H = expansion / volume, mean_gradient / volume[:, None, None]
+        if averaged.any():
+            theta = np.where(averaged > 0, expansion / volume, theta)
+            H = np.where(averaged[:, None, None] > 0,
+                         mean_gradient / volume[:, None, None], G)
         # A mean is the same at all points of the cell, so that of the divergence of a
         # test function its integral remains, as it should.
-        stress = 2 * mu * strain + (lame * theta)[:, None, None] * np.eye(dim)
+        stress = (2 * mu[:, None, None] * strain
+                  + (lame * theta)[:, None, None] * np.eye(dim))
         forces = forces + np.einsum("k,kvj,kij->kvi", dx, G, stress)
         energy += np.sum(dx * (mu * np.sum(strain**2, axis=(1, 2))
                                + lame / 2 * theta**2))
         diagonal = diagonal + dx[:, None] * (
-            lame * np.sum(H**2, axis=2) + mu * (1 + dim) * np.sum(G**2, axis=2))
+            lame[:, None] * np.sum(H**2, axis=2)
+            + mu[:, None] * (1 + dim) * np.sum(G**2, axis=2))
     return (add_up(level.n_nodes, level.cells, forces), energy,
             add_up(level.n_nodes, level.cells, diagonal[..., None])[:, 0])
 

@@ -54,6 +54,15 @@ class Level:
         self.hanging_weights = rows("hanging_weights", 1)
         self.prescribed = nodes("prescribed", 2)
         self.prescribed_values = rows("prescribed_values", 1)
+        # Young's modulus and the like of each region; number 0 is what is in none.
+        means = [self.volumetric_strain == "mean"]
+        self.materials = rows("materials", 3)
+        if len(self.materials) == 0:
+            self.materials = np.array(
+                [[self.youngs_modulus, self.poisson_ratio, *means]], float)
+        one = np.zeros(len(self.cells), int)
+        self.cell_ids = np.asarray(data.get("cell_ids", one)).astype(int)
+        self.cell_regions = np.asarray(data.get("cell_regions", one)).astype(int)
         self.body_force = data.get("body_force")
         self.traction_faces = nodes("traction_faces", 2**(dim - 1))
         self.tractions = rows("tractions", dim)
@@ -68,6 +77,10 @@ class Level:
                 rows("rod_lengths", 1))])
         k = len(self.contact_nodes)
         if (len(self.displacement) != n
+                or len(self.cell_ids) != len(self.cells)
+                or len(self.cell_regions) != len(self.cells)
+                or (len(self.cells) > 0
+                    and self.cell_regions.max() >= len(self.materials))
                 or len(self.boundary_faces) != len(self.boundary_ids)
                 or len(self.hanging_nodes) != len(self.hanging_weights)
                 or len(self.tractions) != 4**(dim - 1) * len(self.traction_faces)

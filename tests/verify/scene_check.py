@@ -29,6 +29,25 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
         verdict.demand(scene["Material/Volumetric strain"] == level.volumetric_strain,
                        "'Material/Volumetric strain' is not what the scene says")
 
+    def regions():
+        given, materials = np.zeros(len(level.cells), int), [level.materials[0]]
+        middles = X[level.cells].mean(axis=1) @ scene.rotation
+        same("Material", level.materials[0][:2], [scene.names["E"], scene.names["nu"]])
+        for key, numbers in scene.conditions("Material/Regions"):
+            if key.startswith("where"):
+                inside = scene.evaluate(key[len("where"):], middles) != 0
+            elif key.isdigit():
+                inside = level.cell_ids == int(key)
+            else:  # a name, which is known to the mesh file only
+                raise NotUnderstood(key)
+            given[inside] = len(materials)
+            kind = numbers[2] if len(numbers) > 2 else level.volumetric_strain
+            materials.append([scene.evaluate(numbers[0]), scene.evaluate(numbers[1]),
+                              kind == "mean"])
+        verdict.demand(np.array_equal(given, level.cell_regions),
+                       "'Material/Regions' has other cells than the scene says")
+        same("Material/Regions", np.array(materials, float), level.materials)
+
     def friction():
         law, F = scene["Contact/Friction law"], scene.names["F"]
         if law == "Coulomb" and F == 0:
@@ -106,6 +125,7 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
                          level.tractions))
 
     attempt("Material", material)
+    attempt("Material/Regions", regions)
     attempt("Contact/Friction bound", friction)
     attempt("Boundary conditions/Displacement", displacement)
     attempt("Boundary conditions/Body force' or 'Traction", loads)

@@ -19,7 +19,7 @@ main(int argc, char **argv)
 
   Discretization<2> discretization(scene, *mesh);
   discretization.set_up();
-  discretization.assemble(elasticity<2>(scene.material()));
+  discretization.assemble(elasticity<2>(scene.materials()));
 
   VectorType         u = discretization.vector(), no_tractions(u);
   ContactState       state = make_initial_guess(discretization, u, no_tractions);
