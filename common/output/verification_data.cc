@@ -363,6 +363,7 @@ namespace Friction
           tables.add_value("rod_radii", rod.radius);
           tables.add_value("rod_lengths",
                            std::isfinite(rod.length) ? rod.length : 0.);
+          tables.add_value("rod_sides", rod.is_hole ? -1. : 1.);
         }
     }
 

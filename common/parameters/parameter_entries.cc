@@ -176,8 +176,9 @@ namespace Friction
       {"Obstacle",
        "Kind",
        "none",
-       choice("none|plane|rods"),
-       "The rigid obstacle: a half space, or circular rods (discs in 2D)."},
+       choice("none|plane|rods|balls|surface"),
+       "The rigid obstacle: a half space, circular rods (discs in 2D), balls "
+       "(3D), or what a function says."},
       {"Obstacle",
        "Point",
        "",
@@ -194,13 +195,33 @@ namespace Friction
        "Centers",
        "",
        text,
-       "A point on the axis of each rod, separated by ';' [length]."},
+       "A point on the axis of each rod, or the centre of each ball, separated "
+       "by ';' [length]."},
       {"Obstacle",
        "Axes",
        "",
        text,
        "3D: direction of the axis of each rod, separated by ';'."},
-      {"Obstacle", "Radius", "1", positive, "Of the rods [length]."},
+      {"Obstacle",
+       "Radius",
+       "1",
+       text,
+       "Of all rods or balls, or of each, separated by ';'; constant "
+       "expressions [length]."},
+      {"Obstacle",
+       "Side",
+       "outside",
+       choice("outside|inside"),
+       "Of rods and balls: where the body is. 'inside': they are holes in the "
+       "obstacle, and the body is in one of them."},
+      {"Obstacle",
+       "Function",
+       "",
+       text,
+       "Of a surface: an expression in x, y (and z) that is positive where the "
+       "body may be and negative in the obstacle, its distance or anything "
+       "else with a slope at the surface, as in 'y + 1 - 0.01*cos(20*x)'. Down "
+       "that slope is straight to the obstacle."},
       {"Obstacle",
        "Length",
        "",

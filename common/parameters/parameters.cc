@@ -502,7 +502,9 @@ namespace Friction
           const std::string here =
             subject + ": region '" + excerpt(text.key) + "' has ";
           if (numbers.size() != 2 && numbers.size() != 3)
-            throw InputError(here + wrong_number(2, numbers.size(), "numbers"));
+            throw InputError(here +
+                             counted(numbers.size(), "number", "numbers") +
+                             ", where 'E, nu' is wanted; correct it.");
           if (numbers.size() == 3 && numbers[2] != "mean" &&
               numbers[2] != "pointwise")
             throw InputError(here + "'" + excerpt(numbers[2]) +
@@ -591,9 +593,14 @@ namespace Friction
       only_with("Scene/Coarse grid", geometry, {"cylinder"});
       for (const std::string name : {"Point", "Normal"})
         only_with("Obstacle/" + name, "Obstacle/Kind", {"plane"});
-      for (const std::string name : {"Centers", "Axes", "Radius", "Length"})
+      for (const std::string name : {"Centers", "Radius", "Side"})
+        only_with("Obstacle/" + name, "Obstacle/Kind", {"rods", "balls"});
+      for (const std::string name : {"Axes", "Length"})
         only_with("Obstacle/" + name, "Obstacle/Kind", {"rods"});
-      only_with("Contact/Contact normal", "Obstacle/Kind", {"plane", "rods"});
+      only_with("Obstacle/Function", "Obstacle/Kind", {"surface"});
+      only_with("Contact/Contact normal",
+                "Obstacle/Kind",
+                {"plane", "rods", "balls", "surface"});
       only_with("Contact/Friction bound", "Contact/Friction law", {"Tresca"});
       // Expressions may use it as F.
       if (!values.uses_word("F"))
@@ -809,12 +816,25 @@ namespace Friction
       auto             &obstacle = parameters.obstacle;
       obstacle.kind              = (kind == "none"      ? ObstacleKind::none
                                       : kind == "plane" ? ObstacleKind::plane
-                                                        : ObstacleKind::rods);
+                                      : kind == "rods"  ? ObstacleKind::rods
+                                      : kind == "balls" ? ObstacleKind::balls
+                                                        : ObstacleKind::surface);
       obstacle.point             = vector_of("Obstacle/Point");
       obstacle.normal            = vector_of("Obstacle/Normal");
       obstacle.centers           = vectors_of("Obstacle/Centers");
       obstacle.axes              = vectors_of("Obstacle/Axes");
-      obstacle.radius            = values.positive_number("Obstacle/Radius");
+      obstacle.is_hole           = values.get("Obstacle/Side") == "inside";
+      obstacle.function          = values.get("Obstacle/Function");
+      for (const auto &radius : vectors_of("Obstacle/Radius"))
+        {
+          if (radius.size() != 1 || !(radius[0] >= 1. / largest_number &&
+                                      radius[0] <= largest_number))
+            throw InputError(values.subject("Obstacle/Radius") + " is '" +
+                             excerpt(values.get("Obstacle/Radius")) +
+                             "', but radii must be positive numbers between "
+                             "1e-30 and 1e30, separated by ';'.");
+          obstacle.radii.push_back(radius[0]);
+        }
       if (!values.get("Obstacle/Length").empty())
         {
           obstacle.length = parameters.expressions.evaluate(
@@ -824,10 +844,22 @@ namespace Friction
                              excerpt(values.get("Obstacle/Length")) +
                              "', but it must be positive.");
         }
-      if (obstacle.kind == ObstacleKind::rods && obstacle.centers.empty())
+      const bool is_round = obstacle.kind == ObstacleKind::rods ||
+        obstacle.kind == ObstacleKind::balls;
+      if (is_round && obstacle.centers.empty())
+        throw InputError(values.subject("Obstacle/Kind") + " is '" + kind +
+                         "', but there are none; set 'Obstacle/Centers'.");
+      if (is_round && obstacle.radii.size() != 1 &&
+          obstacle.radii.size() != obstacle.centers.size())
+        throw InputError(values.subject("Obstacle/Radius") + " has " +
+                         counted(obstacle.radii.size(), "number", "numbers") +
+                         ", but there are " +
+                         std::to_string(obstacle.centers.size()) + " " + kind +
+                         "; give one for each, or one for all.");
+      if (obstacle.kind == ObstacleKind::surface && obstacle.function.empty())
         throw InputError(values.subject("Obstacle/Kind") +
-                         " is 'rods', but there are none; set "
-                         "'Obstacle/Centers'.");
+                         " is 'surface', but there is none; set "
+                         "'Obstacle/Function'.");
       const auto is_zero = [](const std::vector<double> &v) {
         return std::all_of(
           v.begin(), v.end(), [](const double c) { return c == 0.; });

@@ -88,9 +88,11 @@ namespace Friction
 
   enum class ObstacleKind
   {
-    none,  ///< nothing in the way
-    plane, ///< a half space
-    rods   ///< discs in two dimensions, circular rods in three
+    none,   ///< nothing in the way
+    plane,  ///< a half space
+    rods,   ///< discs in two dimensions, circular rods in three
+    balls,  ///< in three dimensions
+    surface ///< where a function is zero
   };
 
   enum class ContactNormal
@@ -158,8 +160,10 @@ namespace Friction
       std::vector<double> normal; ///< into the obstacle; empty: down
       std::vector<std::vector<double>> centers;     ///< of the rods
       std::vector<std::vector<double>> axes;        ///< of the rods, 3D only
-      double                           radius = 1.; ///< of the rods
-      double length = std::numeric_limits<double>::infinity(); ///< likewise
+      std::vector<double>              radii; ///< one for each, or for all
+      double length = std::numeric_limits<double>::infinity(); ///< of the rods
+      bool   is_hole = false; ///< whether the body is inside of rods or balls
+      std::string function;   ///< positive outside of the obstacle
     };
 
     struct Contact

@@ -2,6 +2,7 @@
 #include <common/printable.h>
 #include <common/scene/mesh_file.h>
 
+#include <deal.II/base/bounding_box.h>
 #include <deal.II/base/geometry_info.h>
 #include <deal.II/base/tensor.h>
 
@@ -501,6 +502,16 @@ namespace Friction
   {
     return id_of_name(
       ids_of_cell_names, dim == 2 ? "surface" : "volume", name, where);
+  }
+
+
+
+  template <int dim>
+  double
+  MeshFile<dim>::size() const
+  {
+    return BoundingBox<dim>(vertices).get_boundary_points().first.distance(
+      BoundingBox<dim>(vertices).get_boundary_points().second);
   }
 
 

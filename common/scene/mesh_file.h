@@ -57,6 +57,10 @@ namespace Friction
               const std::set<dealii::types::material_id> &used_materials,
               dealii::Triangulation<dim>                 &triangulation) const;
 
+    /** The largest distance of two vertices, or a little more: the diagonal of
+     * the box around them. */
+    double size() const;
+
     /** Whether a group has faces, none of which lies on the boundary. */
     bool lies_inside(const dealii::types::boundary_id id) const;
 

@@ -1,6 +1,8 @@
 #ifndef friction_scene_obstacle_h
 #define friction_scene_obstacle_h
 
+#include <common/scene/level_surface.h>
+
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
@@ -8,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace Friction
@@ -15,10 +18,11 @@ namespace Friction
   using namespace dealii;
 
   /**
-   * A rigid obstacle: nothing, a half space, or a number of circular rods
-   * (discs in two dimensions). All that the contact conditions ask of it is how
-   * far it is from a point in a given direction, and which direction leads
-   * straight towards it.
+   * A rigid obstacle: nothing, or half spaces, circular rods (discs in two
+   * dimensions), balls, what is around a circular hole or a hollow ball, and
+   * surfaces that are given by a function. All that the contact conditions ask
+   * of it is how far it is from a point in a given direction, and which
+   * direction leads straight towards it.
    */
   template <int dim>
   class Obstacle
@@ -35,13 +39,16 @@ namespace Friction
       Tensor<1, dim> normal; ///< a unit vector
     };
 
-    /// A rod, in two dimensions a disc.
+    /// A rod, in two dimensions a disc; without an axis, a ball.
     struct Rod
     {
       Point<dim>     center;
       Tensor<1, dim> axis; ///< a unit vector; zero in two dimensions
       double         radius;
       double         length; ///< may be infinite
+
+      /// Whether it is a hole in the obstacle, and the body in it.
+      bool is_hole = false;
     };
 
     /// No obstacle at all.
@@ -91,11 +98,26 @@ namespace Friction
       return obstacle;
     }
 
+    /// More of it. An axis may have any length.
+    void
+    add(Rod rod)
+    {
+      if (rod.axis.norm() > 0.)
+        rod.axis /= rod.axis.norm();
+      rods.push_back(rod);
+    }
+
+    void
+    add(const std::shared_ptr<const LevelSurface<dim>> &surface)
+    {
+      surfaces.push_back(surface);
+    }
+
     /// Whether there is no obstacle.
     bool
     empty() const
     {
-      return planes.empty() && rods.empty();
+      return planes.empty() && rods.empty() && surfaces.empty();
     }
 
     /// Of what it consists.
@@ -109,6 +131,13 @@ namespace Friction
     circular_rods() const
     {
       return rods;
+    }
+
+    /// Whether something of it is given by a function.
+    bool
+    has_surfaces() const
+    {
+      return !surfaces.empty();
     }
 
     /**
@@ -129,8 +158,9 @@ namespace Friction
         }
       for (const Rod &rod : rods)
         {
-          // The first intersection of the ray with the circle, in the plane
-          // perpendicular to the axis.
+          // The intersection of the ray with the circle, in the plane
+          // perpendicular to the axis: the first one, or the way out of a
+          // hole.
           const Tensor<1, dim> to_axis      = across(rod, rod.center - p);
           const Tensor<1, dim> n            = across(rod, direction);
           const double         n_sqr        = n.norm_square();
@@ -140,17 +170,22 @@ namespace Friction
           const double         discriminant = along * along - n_sqr * excess;
 
           // The root of the discriminant is r times the cosine sought.
-          const bool flat   = discriminant <= std::pow(flattest_cosine * r, 2);
-          const bool behind = (excess > 0. && along <= 0.);
+          const bool flat = discriminant <= std::pow(flattest_cosine * r, 2);
+          const bool behind =
+            (excess > 0. && (rod.is_hole ? along >= 0. : along <= 0.));
           if (flat || behind)
             continue;
-          const double distance = (along - std::sqrt(discriminant)) / n_sqr;
+          const double root = std::sqrt(discriminant);
+          const double distance =
+            (along + (rod.is_hole ? root : -root)) / n_sqr;
           const double from_middle =
             (p + distance * direction - rod.center) * rod.axis;
           // What ends exactly there shall not be a matter of rounding.
           if (std::abs(from_middle) <= (.5 + 1e-10) * rod.length)
             gap = std::min(gap, distance);
         }
+      for (const auto &surface : surfaces)
+        gap = std::min(gap, surface->gap(p, direction, flattest_cosine));
       return gap;
     }
 
@@ -183,8 +218,15 @@ namespace Friction
       for (const Rod &rod : rods)
         {
           const Tensor<1, dim> to_axis = across(rod, rod.center - p);
+          const double         side    = rod.is_hole ? -1. : 1.;
           if (to_axis.norm() > 0.)
-            consider(to_axis.norm() - rod.radius, to_axis / to_axis.norm());
+            consider(side * (to_axis.norm() - rod.radius),
+                     side * to_axis / to_axis.norm());
+        }
+      for (const auto &surface : surfaces)
+        {
+          const typename LevelSurface<dim>::Way way = surface->way_from(p);
+          consider(way.distance, way.direction);
         }
       return nearest;
     }
@@ -199,6 +241,8 @@ namespace Friction
 
     std::vector<Plane> planes;
     std::vector<Rod>   rods;
+
+    std::vector<std::shared_ptr<const LevelSurface<dim>>> surfaces;
   };
 } // namespace Friction
 

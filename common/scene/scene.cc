@@ -144,6 +144,7 @@ namespace Friction
     rotation[0][1]                  = -s;
     rotation[1][0]                  = s;
 
+    mesh_file = read_mesh_file();
     {
       const auto &text = parameters.obstacle;
       if (text.kind == ObstacleKind::plane)
@@ -158,29 +159,40 @@ namespace Friction
           the_obstacle = Obstacle<dim>::half_space(Point<dim>(rotation * point),
                                                    rotation * normal);
         }
-      else if (text.kind == ObstacleKind::rods)
+      else if (text.kind == ObstacleKind::surface)
+        the_obstacle.add(std::make_shared<const LevelSurface<dim>>(
+          make_function({text.function}, here + "'Obstacle/Function'"),
+          body_size()));
+      else if (text.kind != ObstacleKind::none)
         {
-          std::vector<Point<dim>>     centers;
-          std::vector<Tensor<1, dim>> axes;
-          for (const auto &center : text.centers)
-            centers.emplace_back(
-              rotation * make_point<dim>(center, here + "'Obstacle/Centers'"));
-          if (dim == 3)
+          const bool are_balls = text.kind == ObstacleKind::balls;
+          if (dim == 2 && are_balls)
+            throw InputError(here +
+                             "'Obstacle/Kind' is 'balls', which there are in "
+                             "three dimensions only; take 'rods'.");
+          const bool have_axes = dim == 3 && !are_balls;
+          if (have_axes && text.axes.size() != text.centers.size())
+            throw InputError(here +
+                             "'Obstacle/Axes' needs one direction per "
+                             "point in 'Obstacle/Centers'; correct it.");
+          for (unsigned int i = 0; i < text.centers.size(); ++i)
             {
-              if (text.axes.size() != centers.size())
-                throw InputError(here +
-                                 "'Obstacle/Axes' needs one direction per "
-                                 "point in 'Obstacle/Centers'; correct it.");
-              for (const auto &axis : text.axes)
-                axes.push_back(rotation *
-                               make_point<dim>(axis, here + "'Obstacle/Axes'"));
+              typename Obstacle<dim>::Rod rod;
+              rod.center = Point<dim>(
+                rotation *
+                make_point<dim>(text.centers[i], here + "'Obstacle/Centers'"));
+              if (have_axes)
+                rod.axis =
+                  rotation *
+                  make_point<dim>(text.axes[i], here + "'Obstacle/Axes'");
+              rod.radius  = text.radii[text.radii.size() > 1 ? i : 0];
+              rod.length  = text.length;
+              rod.is_hole = text.is_hole;
+              the_obstacle.add(rod);
             }
-          the_obstacle =
-            Obstacle<dim>::make_rods(centers, axes, text.radius, text.length);
         }
     }
 
-    mesh_file = read_mesh_file();
     read_regions();
     if (!parameters.contact.boundary.empty())
       contact_id = read_boundary_id(parameters.contact.boundary,
@@ -302,6 +314,32 @@ namespace Friction
     if (parameters.contact.friction_law == FrictionLaw::tresca)
       bound = make_function({parameters.contact.friction_bound},
                             here + "'Contact/Friction bound'");
+  }
+
+
+
+  template <int dim>
+  double
+  Scene<dim>::body_size() const
+  {
+    const auto &scene = parameters.scene;
+    switch (scene.geometry)
+      {
+        case GeometryKind::mesh_file:
+          return mesh_file->size();
+        case GeometryKind::rectangle:
+          {
+            double sum = scene.size.empty() ? dim : 0.;
+            for (const double edge : scene.size)
+              sum += edge * edge;
+            return std::sqrt(sum);
+          }
+        case GeometryKind::half_disc:
+        case GeometryKind::half_ball:
+          return 2. * scene.radius;
+        default:
+          return 2. * scene.radius + scene.length;
+      }
   }
 
 

@@ -208,6 +208,9 @@ namespace Friction
     std::string warning() const;
 
   private:
+    /// The largest distance of two points of the body, or a little more.
+    double body_size() const;
+
     void read_regions();
 
     /// The coarse mesh on one process, checked.

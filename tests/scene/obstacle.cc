@@ -3,11 +3,18 @@
 #include <common/scene/obstacle.h>
 #include <common/scene/scene.h>
 
+#include <deal.II/base/function.h>
+
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iostream>
 
+#include <tests/support/check.h>
+
 using namespace dealii;
 using namespace Friction;
+using namespace Tests;
 
 int
 main()
@@ -95,6 +102,84 @@ main()
                   << (1.5 - std::sqrt(r * r - .2 * .2)) / std::cos(angle) - R
                   << std::endl;
       }
+  }
+  {
+    std::cout << "holes and balls" << std::endl;
+    // In a hole it is as far as its radius and the way to its middle say, in
+    // all directions; out of the hole, the way back.
+    Obstacle<2> hole;
+    hole.add({Point<2>(1, 2), Tensor<1, 2>(), 3., 1e300, true});
+    Obstacle<3> ball, cavity;
+    ball.add({Point<3>(1, 2, 3), Tensor<1, 3>(), 2., 1e300});
+    cavity.add({Point<3>(1, 2, 3), Tensor<1, 3>(), 2., 1e300, true});
+    std::cout << hole.gap(Point<2>(1, 2), slanted) << ' '
+              << hole.gap(Point<2>(1, 1), down) << ' '
+              << hole.gap(Point<2>(1, 1), up) << ' '
+              << hole.gap(Point<2>(1, -1.5), down) << ' '
+              << hole.gap(Point<2>(1, -1.5), up) << ' '
+              << hole.normal(Point<2>(1, 1)) << ", "
+              << ball.gap(Point<3>(1, 2, 0), Tensor<1, 3>({0., 0., 1.})) << ' '
+              << ball.gap(Point<3>(1, 2, 0), Tensor<1, 3>({0., .6, .8})) << ' '
+              << ball.normal(Point<3>(1, 2, 0)) << ", "
+              << cavity.gap(Point<3>(1, 2, 4), Tensor<1, 3>({0., 0., 1.}))
+              << ' '
+              << cavity.gap(Point<3>(1, 2, 4), Tensor<1, 3>({0., 0., -1.}))
+              << ' ' << cavity.normal(Point<3>(1, 2, 4)) << std::endl;
+  }
+  {
+    // The same surface as a disc and by formulas, one a distance, one not.
+    std::cout << "surfaces" << std::endl;
+    const Point<2> c(.3, -1.5);
+    const double   r       = .7;
+    const auto     disc    = Obstacle<2>::make_rods({c}, {}, r);
+    const auto     surface = [&](const auto &function) {
+      Obstacle<2> obstacle;
+      obstacle.add(std::make_shared<const LevelSurface<2>>(
+        std::make_shared<const ScalarFunctionFromFunctionObject<2>>(function),
+        2.));
+      return obstacle;
+    };
+    const auto distance =
+      surface([&](const Point<2> &p) { return p.distance(c) - r; });
+    const auto level      = surface([&](const Point<2> &p) {
+      return std::exp(p.distance_square(c)) - std::exp(r * r);
+    });
+    double     difference = 0;
+    for (const Obstacle<2> *other : {&distance, &level})
+      for (double angle = 0; angle < 6.28; angle += .1)
+        for (const double along : {.9, 1., 1.1, 1.5, 2.})
+          {
+            const Tensor<1, 2> way({std::cos(angle), std::sin(angle)});
+            const Point<2>     p       = c + r * along * way;
+            const Tensor<1, 2> towards = -way,
+                               askew({towards[0] * .96 - towards[1] * .28,
+                                      towards[1] * .96 + towards[0] * .28});
+            difference = std::max(
+              {difference,
+               (other->normal(p) - disc.normal(p)).norm(),
+               std::abs(other->gap(p, towards) - disc.gap(p, towards)),
+               std::isfinite(disc.gap(p, askew))
+                 ? std::abs(other->gap(p, askew) - disc.gap(p, askew))
+                 : std::isfinite(other->gap(p, askew)) * 1.,
+               along > 1. ? std::isfinite(other->gap(p, way)) * 1. : 0.});
+          }
+    check_below(difference, 1e-9, "as by formulas for the disc");
+
+    const auto rough = surface([&](const Point<2> &p) {
+      return 5. * (p[1] + 1. - .01 * std::cos(20. * p[0]));
+    });
+    difference       = 0;
+    for (double x = -1; x < 1; x += .01)
+      difference = std::max(difference,
+                            std::abs(rough.gap(Point<2>(x, -.9), down) -
+                                     (.1 - .01 * std::cos(20. * x))));
+    check_below(difference, 1e-12, "gaps over a rough plane");
+    // Straight down the slope, whatever the function's own size.
+    const Tensor<1, 2> slope({.2 * std::sin(20. * .14), 1.});
+    check_below(
+      (rough.normal(Point<2>(.14, -.99)) + slope / slope.norm()).norm(),
+      1e-10,
+      "straight to a rough plane");
   }
   {
     std::cout << "rotated" << std::endl;

@@ -39,7 +39,7 @@ from pathlib import Path
 
 try:
     import h5py  # noqa: F401
-    import numpy  # noqa: F401
+    import numpy as np
 except ImportError as error:
     print(f"friction-verify: Python has no module '{error.name}'; on Debian install "
           "python3-h5py.", file=sys.stderr)
@@ -77,6 +77,10 @@ def verify(directory, tolerance=None):
         if level.level != row["level"]:
             raise NotReadable(f"'{path}' is that of another level.")
         scene = SceneText(text, level.dim)
+        if scene["Obstacle/Kind"] == "surface":
+            # Which is nothing but its expression.
+            level.obstacle = scene.obstacle(
+                np.linalg.norm(np.ptp(level.vertices, axis=0)))
         verdict, unknown = verify_level(level, row, scene,
                                         tolerance or tolerance_of(scene, row))
         remarks += [entry for entry in unknown if entry not in remarks]

@@ -31,6 +31,8 @@ RUNS = {
     "stick-slip": (2, ["Refinement/Levels=1"]),
     "incompressible": (2, ["Refinement/Levels=1"]),
     "wheel": (2, ["Refinement/Levels=3"]),
+    "pin": (2, ["Refinement/Levels=2"]),
+    "rough": (2, ["Refinement/Levels=1"]),
     "crossing-rods": (3, ["Refinement/Maximum dofs=1500"]),
     "half-ball": (3, ["Refinement/Maximum dofs=300"]),
 }
@@ -133,8 +135,8 @@ def move_obstacle(distance):
     def change(level, _):
         obstacle = level.obstacle
         obstacle.planes = [(p + distance * n, n) for p, n in obstacle.planes]
-        obstacle.rods = [(c, a, r - distance, length)
-                         for c, a, r, length in obstacle.rods]
+        obstacle.rods = [(c, a, r - side * distance, length, side)
+                         for c, a, r, length, side in obstacle.rods]
     return change
 
 

@@ -72,9 +72,10 @@ class Level:
         self.friction_bounds = data.get("friction_bounds")
         self.obstacle = Obstacle(
             list(zip(rows("plane_points", dim), rows("plane_normals", dim))),
-            [(c, a, r, length if length > 0 else np.inf) for c, a, r, length in zip(
-                rows("rod_centers", dim), rows("rod_axes", dim), rows("rod_radii", 1),
-                rows("rod_lengths", 1))])
+            [(c, a, r, length if length > 0 else np.inf, side)
+             for c, a, r, length, side in zip(
+                 rows("rod_centers", dim), rows("rod_axes", dim), rows("rod_radii", 1),
+                 rows("rod_lengths", 1), rows("rod_sides", 1))])
         k = len(self.contact_nodes)
         if (len(self.displacement) != n
                 or len(self.cell_ids) != len(self.cells)

@@ -5,6 +5,7 @@ import numpy as np
 from expressions import Expression, NotUnderstood, split
 from run_data import NotReadable
 from obstacle import Obstacle
+from surface import Surface
 
 
 class SceneText:
@@ -75,8 +76,9 @@ class SceneText:
             key, _, components = part.partition(":")
             yield key.strip(), split(components, ",")
 
-    def obstacle(self):
-        """An Obstacle, like that of a verify-NN.h5."""
+    def obstacle(self, body_size=1.):
+        """An Obstacle, like that of a verify-NN.h5. What a function says is looked for
+        within the size of the body."""
         kind, dim = self["Obstacle/Kind"], self.dim
         if kind == "none":
             return Obstacle()
@@ -89,13 +91,24 @@ class SceneText:
                 normal = -np.eye(dim)[-1]
             normal /= np.linalg.norm(normal)
             return Obstacle(planes=[(self.rotation @ point, self.rotation @ normal)])
+        if kind == "surface":
+            text = self["Obstacle/Function"]
+
+            def value(points):
+                return np.broadcast_to(self.evaluate(text, points @ self.rotation),
+                                       len(points)).astype(float)
+
+            return Obstacle(surfaces=[Surface(value, body_size)])
         length = self.numbers(self["Obstacle/Length"])
-        radius = self.number("Obstacle/Radius")
+        radii = [self.numbers(part)[0] for part in split(self["Obstacle/Radius"], ";")]
         rods, axes = [], split(self["Obstacle/Axes"], ";")
         for i, center in enumerate(split(self["Obstacle/Centers"], ";")):
-            axis = self.numbers(axes[i]) if dim == 3 else np.zeros(dim)
-            if dim == 3:
+            axis = np.zeros(dim)
+            if dim == 3 and kind == "rods":
+                axis = self.numbers(axes[i])
                 axis /= np.linalg.norm(axis)
             rods.append((self.rotation @ self.numbers(center), self.rotation @ axis,
-                         radius, length[0] if len(length) else np.inf))
+                         radii[i if len(radii) > 1 else 0],
+                         length[0] if len(length) else np.inf,
+                         -1. if self["Obstacle/Side"] == "inside" else 1.))
         return Obstacle(rods=rods)
