@@ -187,8 +187,8 @@ main(int argc, char **argv)
       for (const double F : {0., 0.05, 0.4, 1.})
         compare_coulomb(refinements, F, 0.3);
       compare_coulomb(refinements, 0.4, 0.45);
-      compare_varying(refinements, {"if(x < 0.4, 0.4, 0.05)", [](double x) {
-                                      return x < .4 ? .4 : .05;
+      compare_varying(refinements, {"if(x < 0.6, 0.8, 0.05)", [](double x) {
+                                      return x < .6 ? .8 : .05;
                                     }});
       compare_varying(refinements, {"max(0, 0.3 - 0.5*x)", [](double x) {
                                       return std::max(0., .3 - .5 * x);

@@ -62,10 +62,9 @@ namespace
   }
 
   // Smooth along x, and with a jump along y.
-  const Coefficient varying = {"if(y < 0.4, 0.1 + 0.3*x, 0)",
-                               [](const Eigen::Vector3d &x) {
-                                 return x[1] < .4 ? .1 + .3 * x[0] : 0.;
-                               }};
+  const Coefficient varying = {
+    "if(y < 0.7, 0.4 + 0.5*x, 0)",
+    [](const Eigen::Vector3d &x) { return x[1] < .7 ? .4 + .5 * x[0] : 0.; }};
 
   Reference::ContactProblem3D
   make_reference(const unsigned int n,
