@@ -711,13 +711,15 @@ namespace Friction
       {"pi", numbers::PI}};
     const auto named_constants =
       read_names("Scene/Constants", constants, values);
-    auto definitions = read_names("Scene/Definitions", constants, values);
     if (F_varies)
       constants.erase("F");
     for (const auto &[name, expression] : named_constants)
       constants[name] =
         Expressions(constants, {})
           .evaluate(expression, values.subject("Scene/Constants"));
+    auto taken       = constants;
+    taken["F"]       = F;
+    auto definitions = read_names("Scene/Definitions", taken, values);
     if (F_varies)
       define_varying_coefficient(
         values, constants, definitions, parameters.contact);
