@@ -26,10 +26,6 @@ namespace Friction
           const double stress = scene.friction_law() == FrictionLaw::tresca
             ? scene.friction_bound()->value(node.point)
             : std::max(0., -normal_component(node, tractions));
-          if (stress < 0.)
-            throw InputError(
-              "'Contact/Friction bound' is negative at a node of "
-              "the contact boundary; make it positive or zero.");
           state.set_normal_force(p, node.measure * stress);
           state.set(p, excess >= 0, false);
         }

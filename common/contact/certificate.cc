@@ -136,7 +136,7 @@ namespace Friction
         const double tau   = problem.has_coulomb_friction()
             ? std::max(0., pressing)
             : state.normal_force(p) / force_scale;
-        const double bound = problem.effective_coefficient() * tau;
+        const double bound = problem.effective_coefficient(node) * tau;
         const auto   r_T   = tangential_components<dim>(node, residual);
         const auto   u_T   = tangential_components<dim>(node, u);
         double       norm = 0, slip_norm = 0;

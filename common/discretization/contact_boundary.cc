@@ -1,5 +1,6 @@
 #include <common/discretization/contact_boundary.h>
 #include <common/parallel/collective_error.h>
+#include <common/parallel/reductions.h>
 #include <common/parameters/wrong_number.h>
 
 #include <deal.II/base/quadrature_lib.h>
@@ -10,6 +11,7 @@
 #include <deal.II/grid/manifold.h>
 #include <deal.II/grid/tria.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -173,6 +175,33 @@ namespace Friction
               add_node(node, constraints, scene);
           }
     });
+    find_coefficients(constraints, scene);
+  }
+
+
+
+  // The law of friction holds at nodes, and so a node has the coefficient of
+  // its point. What nodes keep of it is a fraction, so that all of them follow
+  // when the coefficient is made smaller for a while, see SafeguardedSolver.
+  template <int dim>
+  void
+  ContactBoundary<dim>::find_coefficients(
+    const NodalConstraints<dim> &constraints, const Scene<dim> &scene)
+  {
+    coefficient = scene.friction_coefficient();
+    if (scene.varying_coefficient() == nullptr)
+      return;
+    on_all_processes(constraints.communicator(), [&]() {
+      for (ContactNode<dim> &node : nodes)
+        {
+          node.friction_share = scene.varying_coefficient()->value(node.point);
+          coefficient         = std::max(coefficient, node.friction_share);
+        }
+    });
+    coefficient = max_over_processes(coefficient, constraints.communicator());
+    for (ContactNode<dim> &node : nodes)
+      node.friction_share =
+        coefficient > 0. ? node.friction_share / coefficient : 0.;
   }
 
 

@@ -36,6 +36,10 @@ namespace Friction
     /// forces divided by it are stresses. A length in 2D, an area in 3D.
     double measure;
 
+    /// The coefficient of friction, as a fraction of the largest one on the
+    /// contact boundary: 1 where it is the same everywhere.
+    double friction_share = 1.;
+
     /// Number of tangential directions that the node may move in. The tangents
     /// in the frame are sorted: first the free ones, then those in which the
     /// displacement is prescribed.
@@ -70,9 +74,11 @@ namespace Friction
      * @param hanging  hanging nodes.
      * @param scene    says which part of the boundary it is, and what it may
      *                 touch.
-     * @throws InputError if a node is prescribed to penetrate the obstacle, or
-     *         if a prescribed component at a contact node has a part in normal
-     *         direction, so that contact and prescribed value would compete.
+     * @throws InputError if a node is prescribed to penetrate the obstacle, if
+     *         a prescribed component at a contact node has a part in normal
+     *         direction, so that contact and prescribed value would compete, or
+     *         if the coefficient of friction is negative or no number at a
+     * node.
      */
     ContactBoundary(const Mapping<dim>              &mapping,
                     const DoFHandler<dim>           &dof_handler,
@@ -84,6 +90,14 @@ namespace Friction
     size() const
     {
       return nodes.size();
+    }
+
+    /** The largest coefficient of friction at the nodes of all processes, that
+     * of the scene where it does not vary. */
+    double
+    largest_coefficient() const
+    {
+      return coefficient;
     }
 
     const ContactNode<dim> &
@@ -106,6 +120,10 @@ namespace Friction
 
   private:
     std::vector<ContactNode<dim>> nodes;
+    double                        coefficient = 0.;
+
+    void find_coefficients(const NodalConstraints<dim> &constraints,
+                           const Scene<dim>            &scene);
 
     void add_node(ContactNode<dim>             node,
                   const NodalConstraints<dim> &constraints,

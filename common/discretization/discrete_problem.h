@@ -29,8 +29,9 @@ namespace Friction
 
     FrictionLaw friction_law;
 
-    /// $F$. With the law of Tresca the bound at a node is F times the given
-    /// normal force of the state, with that of Coulomb F times the one found.
+    /// $F$, the largest one where it varies. With the law of Tresca the bound
+    /// at a node is F times the given normal force of the state, with that of
+    /// Coulomb the node's share of F times the one found.
     double friction_coefficient;
 
     MPI_Comm
@@ -53,11 +54,18 @@ namespace Friction
       return has_friction() && friction_law == FrictionLaw::coulomb;
     }
 
-    /// The coefficient that the parts of the solver reckon with.
+    /// The largest coefficient that the parts of the solver reckon with.
     double
     effective_coefficient() const
     {
       return has_friction() ? friction_coefficient : 0.;
+    }
+
+    /// The one at a node.
+    double
+    effective_coefficient(const ContactNode<dim> &node) const
+    {
+      return effective_coefficient() * node.friction_share;
     }
   };
 } // namespace Friction

@@ -77,7 +77,8 @@ namespace Friction
         *nodal_constraints,
         *contact_boundary,
         law,
-        law == FrictionLaw::tresca ? 1. : the_scene.friction_coefficient()});
+        law == FrictionLaw::tresca ? 1.
+                                   : contact_boundary->largest_coefficient()});
     seconds_of_set_up = timer.wall_time();
   }
 

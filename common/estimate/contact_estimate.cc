@@ -16,6 +16,7 @@ namespace Friction
     problem.body_force           = scene.body_force().get();
     problem.contact_boundary     = scene.contact_boundary_id();
     problem.friction_coefficient = scene.friction_coefficient();
+    problem.varying_coefficient  = scene.varying_coefficient().get();
     for (const auto &condition : scene.traction_conditions())
       problem.tractions[condition.boundary_id] = condition.traction.get();
     for (const auto &condition : scene.dirichlet_conditions())

@@ -274,6 +274,7 @@ namespace Friction
 
       void add_complementarity(const CellIterator                       &cell,
                                const unsigned int                        f,
+                               const OnFace<Point<dim>>                 &places,
                                const std::array<double, n_face_corners> &JxW);
 
       // Book a contribution both where and why it arises.
@@ -760,7 +761,7 @@ namespace Friction
 
       if (on_contact_boundary && contact.normal != nullptr &&
           contact.gap_vector != nullptr)
-        add_complementarity(cell, f, JxW);
+        add_complementarity(cell, f, places, JxW);
     }
 
 
@@ -773,6 +774,7 @@ namespace Friction
     Estimator<dim>::add_complementarity(
       const CellIterator                       &cell,
       const unsigned int                        f,
+      const OnFace<Point<dim>>                 &places,
       const std::array<double, n_face_corners> &JxW)
     {
       OnFace<double>         pressure, distance;
@@ -801,6 +803,11 @@ namespace Friction
           slip[k]                = u - (u * n) * n;
         }
 
+      const auto coefficient = [&](const Point<dim> &place) {
+        return problem.varying_coefficient == nullptr
+          ? problem.friction_coefficient
+          : problem.varying_coefficient->value(place);
+      };
       double sum = 0.;
       for (unsigned int q = 0; q < face_quadrature.size(); ++q)
         {
@@ -809,9 +816,9 @@ namespace Friction
           const double         d    = interpolate(hats, distance);
           const Tensor<1, dim> t    = interpolate(hats, tangential_traction);
           const Tensor<1, dim> s    = interpolate(hats, slip);
+          const double         F    = coefficient(interpolate(hats, places));
           sum += (std::max(p, 0.) * std::max(d, 0.) +
-                  std::max(
-                    0., problem.friction_coefficient * p * s.norm() + t * s)) *
+                  std::max(0., F * p * s.norm() + t * s)) *
             JxW[q];
         }
       add(cell, sum, estimate.complementarity);

@@ -51,6 +51,9 @@ namespace Friction
 
     /// Coefficient of friction, for the dissipation in the sliding zone.
     double friction_coefficient = 0.;
+
+    /// Where it is not the same everywhere, instead of that; none if not given.
+    const dealii::Function<dim> *varying_coefficient = nullptr;
   };
 
 

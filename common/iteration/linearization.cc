@@ -182,7 +182,7 @@ namespace Friction
             variant != TruncationVariant::phases_without_second_order)
           {
             const double bound =
-              problem.effective_coefficient() * state.normal_force(p);
+              problem.effective_coefficient(node) * state.normal_force(p);
             const auto   u_T = tangential_components<dim>(node, x.u);
             const double stiffness =
               trace<dim>(problem.stiffness.diagonal_block(node.node)) / dim;
@@ -219,8 +219,9 @@ namespace Friction
               for (unsigned int t = 1; t < dim; ++t)
                 for (unsigned int d = 0; d < dim; ++d)
                   r.local_element(dim * node.node + d) -=
-                    problem.effective_coefficient() * state.normal_force(p) *
-                    u_T[t - 1] / norm * node.frame[t][d];
+                    problem.effective_coefficient(node) *
+                    state.normal_force(p) * u_T[t - 1] / norm *
+                    node.frame[t][d];
           }
     current.apply(r.begin());
   }
@@ -261,7 +262,7 @@ namespace Friction
 
         if (!state.in_contact(p))
           add(node.normal(), node.gap - normal_component(node, x.u));
-        if (problem.effective_coefficient() * state.normal_force(p) > 0 &&
+        if (problem.effective_coefficient(node) * state.normal_force(p) > 0 &&
             !state.sticks(p))
           {
             // The displacement keeps a part in the direction of its slip.

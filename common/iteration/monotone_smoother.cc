@@ -206,7 +206,7 @@ namespace Friction
                                    x.state.in_contact(p)
                                      ? std::max(0., residual * node.normal())
                                      : 0.);
-        bound = problem.friction_coefficient * x.state.normal_force(p);
+        bound = problem.effective_coefficient(node) * x.state.normal_force(p);
       }
 
     std::array<double, dim>     b;

@@ -81,8 +81,8 @@ namespace Friction
           for (const double component :
                tangential_components<dim>(problem.contact[p], u))
             square += component * component;
-          sum += problem.friction_coefficient * state.normal_force(p) *
-            std::sqrt(square);
+          sum += problem.effective_coefficient(problem.contact[p]) *
+            state.normal_force(p) * std::sqrt(square);
         }
     return sum;
   }
@@ -191,10 +191,14 @@ namespace Friction
       for (unsigned int p = 0; p < problem.contact.size(); ++p)
         if (state.normal_force(p) > 0)
           {
-            const auto a    = tangential_components<dim>(problem.contact[p], u);
-            const auto b    = tangential_components<dim>(problem.contact[p], v);
-            Term       term = {
-                    problem.friction_coefficient * state.normal_force(p), 0, 0, 0};
+            const ContactNode<dim> &node = problem.contact[p];
+            const auto              a    = tangential_components<dim>(node, u);
+            const auto              b    = tangential_components<dim>(node, v);
+            Term term = {problem.effective_coefficient(node) *
+                           state.normal_force(p),
+                         0,
+                         0,
+                         0};
             for (unsigned int t = 0; t < dim - 1; ++t)
               {
                 term.uu += a[t] * a[t];

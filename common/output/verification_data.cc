@@ -321,6 +321,9 @@ namespace Friction
                              {static_cast<unsigned int>(record.dof / dim)});
           tables.add_numbers("contact_states", {record.state});
           tables.add_vector("contact_normals", record.normal);
+          if (scene.varying_coefficient() != nullptr)
+            tables.add_value("friction_coefficients",
+                             scene.varying_coefficient()->value(record.point));
           if (scene.friction_bound() != nullptr)
             tables.add_value("friction_bounds",
                              scene.friction_bound()->value(record.point));

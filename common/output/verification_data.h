@@ -23,7 +23,7 @@ namespace Friction
    * `poisson_ratio`, `volumetric_strain` (`pointwise` or `mean`);
    * `contact_boundary` (boundary id, -1 for none), `contact_normal` (`body` or
    * `obstacle`), `friction_law` (`none`, `Tresca` or `Coulomb`),
-   * `friction_coefficient`.
+   * `friction_coefficient` (zero where it varies).
    *
    * Datasets, each node of the leaf mesh having the number of its row in
    * `vertices`. Those that would be empty are not there.
@@ -46,6 +46,8 @@ namespace Friction
    * - `contact_nodes`: the nodes that may touch;
    * - `contact_normals`: dim components of their unit normals;
    * - `contact_states`: 0 open, 1 sliding, 2 sticking;
+   * - `friction_coefficients`: with Coulomb's law, their coefficients, where
+   *   these vary;
    * - `friction_bounds`: with Tresca's law, their largest tangential stress;
    * - `plane_points`, `plane_normals`: a point of each plane, and the normal
    *   into the obstacle;

@@ -225,8 +225,10 @@ namespace Friction
     const MPI_Comm communicator = discretization.constraints().communicator();
 
     std::vector<std::string> warnings = parameters.warnings;
-    if (!scene.warning().empty())
-      warnings.push_back(scene.warning());
+    const std::string        about_scene =
+      scene.warning(discretization.contact().largest_coefficient());
+    if (!about_scene.empty())
+      warnings.push_back(about_scene);
     warn_of_cracks(mesh, warnings);
     const bool is_refined = parameters.refinement.initial_refinements > 0 ||
       parameters.refinement.levels > 0;

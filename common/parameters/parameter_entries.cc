@@ -133,14 +133,15 @@ namespace Friction
        text,
        "Numbers with a name, for use in expressions: 'a = 1; b = 2*a'. E, "
        "nu, "
-       "lambda, mu (material), F (friction coefficient) and pi are "
-       "there already."},
+       "lambda, mu (material), F (friction coefficient, if it is a number) and "
+       "pi are there already."},
       {"Scene",
        "Definitions",
        "",
        text,
        "Expressions with a name, which may use the coordinates, the "
-       "constants and the definitions before them: 'r = sqrt(x^2+y^2)'."},
+       "constants and the definitions before them: 'r = sqrt(x^2+y^2)'. F is "
+       "one of them if the friction coefficient is an expression."},
       {"Scene",
        "Exact displacement",
        "",
@@ -272,8 +273,11 @@ namespace Friction
       {"Contact",
        "Friction coefficient",
        "0",
-       number,
-       "Of Coulomb's law; with 0 nothing of friction is computed."},
+       text,
+       "Of Coulomb's law; with 0 nothing of friction is computed. Where it "
+       "varies an expression, which is nowhere negative, and which may use "
+       "definitions that do not use F. It is evaluated at the nodes of the "
+       "body before that is deformed."},
       {"Contact",
        "Friction bound",
        "0",

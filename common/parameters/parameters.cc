@@ -113,6 +113,24 @@ namespace Friction
 
 
 
+    // Whether a word is among those of an expression.
+    bool
+    uses_word(const std::string &expression, const std::string &word)
+    {
+      const auto is_name = [](const unsigned char c) {
+        return std::isalnum(c) || c == '_';
+      };
+      for (std::size_t i = expression.find(word); i != expression.npos;
+           i             = expression.find(word, i + 1))
+        if ((i == 0 || !is_name(expression[i - 1])) &&
+            (i + word.size() == expression.size() ||
+             !is_name(expression[i + word.size()])))
+          return true;
+      return false;
+    }
+
+
+
     // The values of all entries, and where each was set, so that an error found
     // later can still point to the place.
     class Values
@@ -213,23 +231,13 @@ namespace Friction
         return origin.count(path) > 0 && get(path) != entry->default_value;
       }
 
-      // Whether some value contains a word, as expressions do.
+      // Whether some value uses a word, as expressions do.
       bool
-      uses_word(const std::string &word)
+      any_uses(const std::string &word)
       {
-        const auto is_name = [](const unsigned char c) {
-          return std::isalnum(c) || c == '_';
-        };
         for (const auto &[path, where] : origin)
-          {
-            const std::string value = get(path);
-            for (std::size_t i = value.find(word); i != value.npos;
-                 i             = value.find(word, i + 1))
-              if ((i == 0 || !is_name(value[i - 1])) &&
-                  (i + word.size() == value.size() ||
-                   !is_name(value[i + word.size()])))
-                return true;
-          }
+          if (uses_word(get(path), word))
+            return true;
         return false;
       }
 
@@ -530,6 +538,32 @@ namespace Friction
 
 
 
+    // A coefficient of friction that is not a number is a definition of F. It
+    // may use the definitions before the first one that uses it, and comes
+    // right after them.
+    void
+    define_varying_coefficient(
+      Values                                           &values,
+      const std::map<std::string, double>              &constants,
+      std::vector<std::pair<std::string, std::string>> &definitions,
+      Parameters::Contact                              &contact)
+    {
+      const std::string name      = "Contact/Friction coefficient";
+      contact.varying_coefficient = values.get(name);
+      const auto first_use        = std::find_if(
+        definitions.begin(), definitions.end(), [](const auto &definition) {
+          return uses_word(definition.second, "F");
+        });
+      const Expressions before(constants,
+                               {definitions.begin(), first_use},
+                               values.subject("Scene/Definitions"));
+      parse_function<3>(
+        {contact.varying_coefficient}, before, values.subject(name));
+      definitions.insert(first_use, {"F", contact.varying_coefficient});
+    }
+
+
+
     // A number, or the word that leaves it to the estimated error.
     void
     read_inner_tolerance(Values &values, Parameters &parameters)
@@ -603,7 +637,7 @@ namespace Friction
                 {"plane", "rods", "balls", "surface"});
       only_with("Contact/Friction bound", "Contact/Friction law", {"Tresca"});
       // Expressions may use it as F.
-      if (!values.uses_word("F"))
+      if (!values.any_uses("F"))
         only_with(
           "Contact/Friction coefficient", "Contact/Friction law", {"Coulomb"});
       for (const std::string name : {"Marking", "Contact zone"})
@@ -716,7 +750,10 @@ namespace Friction
     // expressions may use them.
     const double E  = values.positive_number("Material/Young's modulus");
     const double nu = values.number("Material/Poisson ratio");
-    const double F  = values.number("Contact/Friction coefficient");
+    const bool   F_varies =
+      !Patterns::Double().match(values.get("Contact/Friction coefficient"));
+    const double F =
+      F_varies ? 0. : values.number("Contact/Friction coefficient");
     check_poisson_ratio(nu,
                         values.subject("Material/Poisson ratio") + " is " +
                           excerpt(values.get("Material/Poisson ratio")));
@@ -734,15 +771,22 @@ namespace Friction
       {"mu", parameters.material.mu()},
       {"F", F},
       {"pi", numbers::PI}};
-    for (const auto &[name, expression] :
-         read_names("Scene/Constants", constants, values))
+    const auto named_constants =
+      read_names("Scene/Constants", constants, values);
+    if (F_varies)
+      constants.erase("F");
+    for (const auto &[name, expression] : named_constants)
       constants[name] =
         Expressions(constants, {})
           .evaluate(expression, values.subject("Scene/Constants"));
+    auto taken       = constants;
+    taken["F"]       = F;
+    auto definitions = read_names("Scene/Definitions", taken, values);
+    if (F_varies)
+      define_varying_coefficient(
+        values, constants, definitions, parameters.contact);
     parameters.expressions =
-      Expressions(constants,
-                  read_names("Scene/Definitions", constants, values),
-                  values.subject("Scene/Definitions"));
+      Expressions(constants, definitions, values.subject("Scene/Definitions"));
 
     read_regions(kind, values, parameters);
 

@@ -170,7 +170,8 @@ namespace Friction
     {
       std::string   boundary; ///< id or name; empty: no contact boundary
       FrictionLaw   friction_law         = FrictionLaw::coulomb;
-      double        friction_coefficient = 0.;
+      double        friction_coefficient = 0.; ///< if it is a number
+      std::string   varying_coefficient;       ///< if not, an expression
       std::string   friction_bound; ///< Tresca: given stress, an expression
       ContactNormal normal                        = ContactNormal::obstacle;
       bool          ignore_prescribed_penetration = false;

@@ -103,7 +103,8 @@ namespace Friction
   template <int dim>
   std::shared_ptr<const Function<dim>>
   Scene<dim>::make_function(const std::vector<std::string> &components,
-                            const std::string              &where) const
+                            const std::string              &where,
+                            const double                    smallest) const
   {
     std::string text;
     for (const std::string &component : components)
@@ -111,7 +112,8 @@ namespace Friction
     const std::shared_ptr<const Function<dim>> function = checked_function<dim>(
       parse_function<dim>(components, parameters.expressions, where),
       where,
-      text);
+      text,
+      smallest);
     return parameters.scene.rotation_angle == 0.
       ? function
       : turned_function<dim>(function, rotation);
@@ -311,9 +313,15 @@ namespace Friction
         exact = make_function(components, where);
       }
 
+    if (parameters.contact.friction_law == FrictionLaw::coulomb &&
+        !parameters.contact.varying_coefficient.empty())
+      coefficient = make_function({parameters.contact.varying_coefficient},
+                                  here + "'Contact/Friction coefficient'",
+                                  0.);
     if (parameters.contact.friction_law == FrictionLaw::tresca)
       bound = make_function({parameters.contact.friction_bound},
-                            here + "'Contact/Friction bound'");
+                            here + "'Contact/Friction bound'",
+                            0.);
   }
 
 
@@ -551,6 +559,7 @@ namespace Friction
   {
     const auto &contact = parameters.contact;
     return (contact.friction_law == FrictionLaw::coulomb &&
+            contact.varying_coefficient.empty() &&
             contact.friction_coefficient == 0.)
       ? FrictionLaw::none
       : contact.friction_law;
@@ -571,7 +580,7 @@ namespace Friction
 
   template <int dim>
   std::string
-  Scene<dim>::warning() const
+  Scene<dim>::warning(const double largest_coefficient) const
   {
     // One without the other is most likely forgotten. Given friction needs no
     // obstacle.
@@ -589,10 +598,10 @@ namespace Friction
     double bound = std::numeric_limits<double>::max();
     for (const Material &material : the_materials.of_regions())
       bound = std::min(bound, eck_bound(dim, material.poisson_ratio()));
-    if (friction_coefficient() <= bound)
+    if (largest_coefficient <= bound)
       return "";
     std::ostringstream text;
-    text << "Warning: the coefficient of friction " << friction_coefficient()
+    text << "Warning: the coefficient of friction " << largest_coefficient
          << " is above Eck's bound " << std::setprecision(3) << bound
          << " for this Poisson ratio, below which a solution is known to "
             "exist; there may be none, or several.";

@@ -187,8 +187,20 @@ namespace Friction
      */
     FrictionLaw friction_law() const;
 
-    /// Coefficient of friction; zero without friction.
+    /// Coefficient of friction if it is the same everywhere; zero if not, or
+    /// without friction.
     double friction_coefficient() const;
+
+    /**
+     * Coulomb's law: the coefficient of friction where it is not the same
+     * everywhere, a function of one component on the body as it is before it is
+     * deformed; null if it is.
+     */
+    std::shared_ptr<const Function<dim>>
+    varying_coefficient() const
+    {
+      return coefficient;
+    }
 
     /**
      * Tresca's law: the largest tangential stress, one component; null for the
@@ -204,8 +216,10 @@ namespace Friction
      * What should be said before anybody believes a solution, or nothing: that
      * there is an obstacle but no boundary that may touch it, or the other way
      * round, or that the coefficient of friction is above Eck's bound.
+     *
+     * @param largest_coefficient  of friction, on the contact boundary.
      */
-    std::string warning() const;
+    std::string warning(const double largest_coefficient) const;
 
   private:
     /// The largest distance of two points of the body, or a little more.
@@ -245,11 +259,13 @@ namespace Friction
     std::vector<PinnedPoint<dim>>        pinned;
     std::shared_ptr<const Function<dim>> force;
     std::shared_ptr<const Function<dim>> exact;
+    std::shared_ptr<const Function<dim>> coefficient;
     std::shared_ptr<const Function<dim>> bound;
 
     std::shared_ptr<const Function<dim>>
     make_function(const std::vector<std::string> &components,
-                  const std::string              &where) const;
+                  const std::string              &where,
+                  const double smallest = -largest_number) const;
   };
 
 

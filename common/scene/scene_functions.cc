@@ -20,11 +20,13 @@ namespace Friction
     public:
       CheckedFunction(const std::shared_ptr<const Function<dim>> &function,
                       const std::string                          &where,
-                      const std::string                          &text)
+                      const std::string                          &text,
+                      const double                                smallest)
         : Function<dim>(function->n_components)
         , function(function)
         , where(where)
         , text(text)
+        , smallest(smallest)
       {}
 
       void
@@ -32,7 +34,7 @@ namespace Friction
       {
         function->vector_value(p, values);
         for (unsigned int c = 0; c < values.size(); ++c)
-          check(values[c], p);
+          check(values[c], p, smallest);
       }
 
       double
@@ -40,7 +42,7 @@ namespace Friction
             const unsigned int component = 0) const override
       {
         const double value = function->value(p, component);
-        check(value, p);
+        check(value, p, smallest);
         return value;
       }
 
@@ -50,15 +52,17 @@ namespace Friction
       {
         const Tensor<1, dim> gradient = function->gradient(p, component);
         for (unsigned int d = 0; d < dim; ++d)
-          check(gradient[d], p);
+          check(gradient[d], p, -largest_number);
         return gradient;
       }
 
     private:
       void
-      check(const double value, const Point<dim> &p) const
+      check(const double      value,
+            const Point<dim> &p,
+            const double      smallest_here) const
       {
-        if (std::abs(value) <= largest_number)
+        if (value >= smallest_here && value <= largest_number)
           return;
         std::ostringstream sentence;
         sentence << where << ": '" << excerpt(text) << "' is ";
@@ -70,13 +74,16 @@ namespace Friction
         sentence << " at (";
         for (unsigned int d = 0; d < dim; ++d)
           sentence << (d > 0 ? ", " : "") << p[d];
-        sentence << "), where a number up to 1e30 is needed; correct it.";
+        sentence << "), where a number "
+                 << (smallest_here == 0. ? "from 0 up to" : "up to")
+                 << " 1e30 is needed; correct it.";
         throw InputError(sentence.str());
       }
 
       const std::shared_ptr<const Function<dim>> function;
       const std::string                          where;
       const std::string                          text;
+      const double                               smallest;
     };
 
 
@@ -143,9 +150,11 @@ namespace Friction
   std::shared_ptr<const Function<dim>>
   checked_function(const std::shared_ptr<const Function<dim>> &function,
                    const std::string                          &where,
-                   const std::string                          &text)
+                   const std::string                          &text,
+                   const double                                smallest)
   {
-    return std::make_shared<CheckedFunction<dim>>(function, where, text);
+    return std::make_shared<CheckedFunction<dim>>(
+      function, where, text, smallest);
   }
 
 
@@ -163,15 +172,18 @@ namespace Friction
   template std::shared_ptr<const Function<1>>
   checked_function(const std::shared_ptr<const Function<1>> &,
                    const std::string &,
-                   const std::string &);
+                   const std::string &,
+                   const double);
   template std::shared_ptr<const Function<2>>
   checked_function(const std::shared_ptr<const Function<2>> &,
                    const std::string &,
-                   const std::string &);
+                   const std::string &,
+                   const double);
   template std::shared_ptr<const Function<3>>
   checked_function(const std::shared_ptr<const Function<3>> &,
                    const std::string &,
-                   const std::string &);
+                   const std::string &,
+                   const double);
   template std::shared_ptr<const Function<2>>
   turned_function(const std::shared_ptr<const Function<2>> &,
                   const Tensor<2, 2> &);

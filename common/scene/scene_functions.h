@@ -1,6 +1,8 @@
 #ifndef friction_scene_scene_functions_h
 #define friction_scene_scene_functions_h
 
+#include <common/parameters/parameters.h>
+
 #include <deal.II/base/function.h>
 #include <deal.II/base/tensor.h>
 
@@ -13,19 +15,21 @@ namespace Friction
 
   /**
    * The same function, which throws InputError where its value is no finite
-   * number, as that of 1/x is at x = 0: the sentence names the expression, the
-   * point and the value. Loads are evaluated by each process on its own cells;
-   * the caller sees to it that the error becomes that of all processes, see
-   * on_all_processes().
+   * number, as that of 1/x is at x = 0, or one below the smallest that is
+   * allowed: the sentence names the expression, the point and the value. Loads
+   * are evaluated by each process on its own cells; the caller sees to it that
+   * the error becomes that of all processes, see on_all_processes().
    *
-   * @param where  the beginning of the sentence
-   * @param text   the expressions as the author of the scene wrote them
+   * @param where     the beginning of the sentence
+   * @param text      the expressions as the author of the scene wrote them
+   * @param smallest  what values may not be below
    */
   template <int dim>
   std::shared_ptr<const Function<dim>>
   checked_function(const std::shared_ptr<const Function<dim>> &function,
                    const std::string                          &where,
-                   const std::string                          &text);
+                   const std::string                          &text,
+                   const double smallest = -largest_number);
 
   /**
    * A function given for the scene as written, seen from the turned scene: its

@@ -64,6 +64,25 @@ def table_6_1(runs):
     return "\n".join(rows)
 
 
+def outer_start(runs):
+    """Outer iterations of Algorithm 2 by what they start from, beside the thesis."""
+    thesis = {row[0]: row[1:] for row in THESIS}
+    rows = ["       |      thesis       |       dofs here       |"
+            " from interpolated forces |        from zero",
+            " level |    dof outer  Jac |     Q1   with centres |"
+            "   outer  Jac  7th change |   outer  Jac  7th change"]
+    for line in (runs / "outer-start.txt").read_text().splitlines()[1:]:
+        mesh, _, forces, zero = (part.split() for part in line.split("|"))
+        dof, _, _, outer, jac, _, _ = thesis.get(int(mesh[0]), [None] * 7)
+        rows.append(f" {mesh[0]:>5} | {show(dof):>6} {show(outer):>5} {show(jac):>4} |"
+                    f" {mesh[1]:>6} {mesh[2]:>14} |")
+        for outer, jac, _, seventh in (forces, zero):
+            rows[-1] += (f"   {outer:>5} {jac:>4}  "
+                         f"{'-' if float(seventh) == 0 else seventh:>10} |")
+        rows[-1] = rows[-1].rstrip(" |")
+    return "\n".join(rows)
+
+
 def cycles(runs):
     """Cycles per level of Algorithm 3, by coarse correction."""
     columns = [("default", "hertz"), ("V33-trunc", "V33-truncated"),
@@ -178,6 +197,7 @@ def main():
                   "console": partial(console, runs),
                   "one-level": partial(one_level, runs),
                   "table-6.1": partial(table_6_1, runs),
+                  "outer-start": partial(outer_start, runs),
                   "cycles": partial(cycles, runs),
                   "half-plane": partial(comparison, runs),
                   "checks": partial(checks, runs)}, output, document)

@@ -40,18 +40,48 @@ def table_6_2(runs):
         rows.append(f" {k:5d} | {dof:7d} {show(contact):>7} {show(sticky):>6} "
                     f"{show(outer):>5} {show(jac):>4} {show(gs):>4} "
                     f"{show(rho, '{:.1e}'):>11}")
-    for title, name in (("one hexahedron, default cycle", "one-cell"),
-                        ("O-grid, default cycle", "large")):
+    for title, name, first in (
+            ("cylinder-thesis, one hexahedron, W(3,3), monotone, contact",
+             "thesis-W-contact", 1),
+            ("cylinder-thesis, one hexahedron, default cycle", "thesis", 1),
+            ("cylinder, O-grid, default cycle", "large", 0)):
         jacobi, seidel = Run(runs / f"{name}-fixed-point"), Run(runs / name)
         rows += ["", f"       here: {title}", head]
         for k in jacobi.levels["level"]:
             level = at(jacobi, k)
             rows.append(
-                f" {k:5d} | {level['dofs']:7d} {level['contact_nodes']:7d} "
+                f" {k + first:5d} | {level['dofs']:7d} {level['contact_nodes']:7d} "
                 f"{level['sticky_nodes']:6d} {level['outer_iterations']:5d} "
                 f"{level['cycles']:4d} {seidel.levels['cycles'][k]:4d} "
                 f"{level['rho_tau']:11.1e} {level['rho_tau_contraction']:12.1e}")
     return "\n".join(rows)
+
+
+def mesh_truncation_cycle(runs):
+    """Cycles of Algorithm 3 on the scene cylinder-thesis: what of them is the mesh,
+    what the truncation, and what the cycle."""
+    kinds = ("", "-contact", "-W", "-W-contact")
+    names = ("default", "contact", "W33-mono", "both")
+    rows = ["       |        |                one hexahedron               |"
+            "                    O-grid",
+            " level | thesis |" + 2 * ("     dofs" + "".join(
+                f"{name:>9}" for name in names) + " |")]
+    meshes = [[Run(runs / f"thesis{mesh}{kind}").levels for kind in kinds]
+              for mesh in ("", "-O-grid")]
+    thesis = {row[0]: row[6] for row in THESIS}
+    for k in range(max(len(levels[0]["level"]) for levels in meshes)):
+        row = f" {k + 1:5d} | {show(thesis.get(k + 1)):>6} |"
+        for levels in meshes:
+            if k < len(levels[0]["level"]):
+                row += f"{levels[0]['dofs'][k]:9d}" + "".join(
+                    f"{one['cycles'][k]:9d}" for one in levels) + " |"
+        rows.append(row)
+    return "\n".join(row.rstrip(" |") for row in rows)
+
+
+def stick_share(_):
+    """What the target benchmark-stick-share has found."""
+    return Path(__file__).with_name("stick-share.txt").read_text().rstrip("\n")
 
 
 def columns_of_cycles(runs, columns):
@@ -265,8 +295,9 @@ def main():
     runs, output, document = map(Path, sys.argv[1:4])
     tables.write({name: partial(make, runs) for name, make in
                   (("console-3d", console), ("table-6.2", table_6_2),
-                   ("cycles-3d", cycles), ("truncation", truncation),
-                   ("uniform", uniform), ("ends", ends),
+                   ("cycles-thesis", mesh_truncation_cycle),
+                   ("stick-share", stick_share), ("cycles-3d", cycles),
+                   ("truncation", truncation), ("uniform", uniform), ("ends", ends),
                    ("half-ball", half_ball), ("extruded", extruded),
                    ("stick-slip-3d", stick_slip), ("checks-3d", checks))},
                  output, document)

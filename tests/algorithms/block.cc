@@ -5,6 +5,7 @@
 
 #include <common/algorithms/nested_iteration.h>
 
+#include <functional>
 #include <iostream>
 
 #include <tests/support/check.h>
@@ -131,6 +132,31 @@ namespace
 
 
 
+  // As a function, and as the scene says it.
+  struct Coefficient
+  {
+    std::string                   text;
+    std::function<double(double)> value;
+  };
+
+
+
+  void
+  compare_varying(const unsigned int refinements, const Coefficient &F)
+  {
+    const unsigned int n = 1 << refinements;
+    std::cout << n << "x" << n << " cells, F = " << F.text << ": ";
+    Reference::ContactProblem problem = Reference::block(n, 1., 0.3);
+    for (Reference::ContactNode &node : problem.contact)
+      node.friction_coefficient = F.value(problem.mesh.nodes[node.node][0]);
+    compare(refinements,
+            problem,
+            "block",
+            {"Contact/Friction coefficient=" + F.text});
+  }
+
+
+
   // The bound of a node is the stress times its part of the lower edge.
   void
   compare_tresca(const unsigned int refinements, const double bound)
@@ -161,6 +187,12 @@ main(int argc, char **argv)
       for (const double F : {0., 0.05, 0.4, 1.})
         compare_coulomb(refinements, F, 0.3);
       compare_coulomb(refinements, 0.4, 0.45);
+      compare_varying(refinements, {"if(x < 0.6, 0.8, 0.05)", [](double x) {
+                                      return x < .6 ? .8 : .05;
+                                    }});
+      compare_varying(refinements, {"max(0, 0.3 - 0.5*x)", [](double x) {
+                                      return std::max(0., .3 - .5 * x);
+                                    }});
       for (const double bound : {0.003, 0.006, 0.1})
         compare_tresca(refinements, bound);
     }

@@ -46,13 +46,37 @@ namespace
         -.05 * (x[1] - .5), .05 * (x[0] - .5), -.02 + .03 * x[0] + .01 * x[1]);
     }};
 
+  /** The coefficient of friction: likewise. */
+  struct Coefficient
+  {
+    std::string                                    text;
+    std::function<double(const Eigen::Vector3d &)> value;
+  };
+
+  Coefficient
+  constant(const double F)
+  {
+    std::ostringstream text;
+    text << F;
+    return {text.str(), [F](const Eigen::Vector3d &) { return F; }};
+  }
+
+  // Smooth along x, and with a jump along y.
+  const Coefficient varying = {
+    "if(y < 0.7, 0.4 + 0.5*x, 0)",
+    [](const Eigen::Vector3d &x) { return x[1] < .7 ? .4 + .5 * x[0] : 0.; }};
+
   Reference::ContactProblem3D
   make_reference(const unsigned int n,
-                 const double       F,
+                 const Coefficient &F,
                  const double       nu,
                  const Top         &top)
   {
-    Reference::ContactProblem3D problem = Reference::block_3d(n, F, nu);
+    // What has friction somewhere has Coulomb's law.
+    Reference::ContactProblem3D problem =
+      Reference::block_3d(n, F.text == "0" ? 0. : 1., nu);
+    for (Reference::ContactNode3D &node : problem.contact)
+      node.friction_coefficient = F.value(problem.mesh.nodes[node.node]);
     for (Reference::PrescribedDisplacement &d : problem.dirichlet)
       d.value = top.displacement(problem.mesh.nodes[d.node])[d.component];
     return problem;
@@ -82,7 +106,7 @@ namespace
   {
   public:
     Block(const unsigned int refinements,
-          const double       F,
+          const Coefficient &F,
           const double       nu,
           const Top         &top = as_in_scene)
       : n(1 << refinements)
@@ -90,7 +114,7 @@ namespace
       , exact(Reference::solve(problem))
       , iteration(without_safeguards(read_parameters(
           SCENES_3D_DIR "/block.prm",
-          {override("Contact/Friction coefficient", F),
+          {"Contact/Friction coefficient=" + F.text,
            override("Material/Poisson ratio", nu),
            override("Refinement/Initial refinements", refinements),
            "Boundary conditions/Displacement=5: " + top.text,
@@ -107,7 +131,7 @@ namespace
       for (unsigned int p = 0; p < problem.contact.size(); ++p)
         state_at[problem.contact[p].node] = exact.state[p];
 
-      std::cout << n << "^3 cells, F = " << F << ", nu = " << nu << ": "
+      std::cout << n << "^3 cells, F = " << F.text << ", nu = " << nu << ": "
                 << exact.state.size() - exact.count(Reference::State::open)
                 << " of " << exact.state.size() << " nodes in contact, "
                 << exact.count(Reference::State::sticking) << " sticking"
@@ -220,7 +244,7 @@ main(int argc, char **argv)
 
   // Algorithms, coarse corrections and local solvers.
   const auto compare = [](const unsigned int refinements,
-                          const double       F,
+                          const Coefficient &F,
                           const double       nu,
                           const Top         &top = as_in_scene) {
     std::vector<Variant> variants;
@@ -238,17 +262,18 @@ main(int argc, char **argv)
   for (const unsigned int refinements : {2, 3})
     {
       for (const double F : {0., .05, .4, 1.})
-        compare(refinements, F, .3);
-      compare(refinements, .4, .45);
+        compare(refinements, constant(F), .3);
+      compare(refinements, constant(.4), .45);
+      compare(refinements, varying, .3);
     }
 
   std::cout << "The top turned and tilted" << std::endl;
-  compare(2, 0., .3, turned_and_tilted);
+  compare(2, constant(0.), .3, turned_and_tilted);
   for (const unsigned int refinements : {2, 3})
-    compare(refinements, .2, .3, turned_and_tilted);
+    compare(refinements, constant(.2), .3, turned_and_tilted);
 
   std::cout << "What is truncated" << std::endl;
-  Block block(3, .2, .3, turned_and_tilted);
+  Block block(3, constant(.2), .3, turned_and_tilted);
   for (const auto &c : corrections)
     for (const auto &t : truncations)
       block.check_all({{"",

@@ -112,7 +112,7 @@ main(int argc, char *argv[])
 
   const Parameters p = parameters();
   const Scene<2>   scene(p);
-  std::cout << scene.warning() << std::endl;
+  std::cout << scene.warning(scene.friction_coefficient()) << std::endl;
   const auto mesh = make_triangulation<2>();
   scene.make_coarse_mesh(*mesh);
   const Discretized<2> d(scene, *mesh);

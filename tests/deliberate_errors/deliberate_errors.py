@@ -15,8 +15,8 @@ import sys
 # What it is, the file, what stands there, and what stands there instead.
 ERRORS = [
     ("friction drives", "common/iteration/tresca_functional.cc",
-     "sum += problem.friction_coefficient * state.normal_force(p) *",
-     "sum -= problem.friction_coefficient * state.normal_force(p) *",
+     "sum += problem.effective_coefficient(problem.contact[p]) *",
+     "sum -= problem.effective_coefficient(problem.contact[p]) *",
      "the sign of the friction term in the energy"),
     ("hanging row lost", "common/discretization/contact_boundary.cc",
      "master.second * measure;",

@@ -102,6 +102,17 @@ main()
               << std::endl;
   }
 
+  // A coefficient of friction that varies is a definition, wherever it stands.
+  {
+    const Parameters p =
+      read_parameters("some.scene.prm",
+                      {"Contact/Friction coefficient=0.1*r",
+                       "Scene/Definitions=r = x/L; s = F + r"});
+    std::cout << "F " << p.contact.varying_coefficient << ", expanded "
+              << p.expressions.expand("F") << ", in a definition "
+              << p.expressions.expand("s") << std::endl;
+  }
+
   // The sweeps that nobody asked for.
   for (const std::string nu : {"0", "0.3", "0.45", "0.49", "0.4999"})
     {
@@ -161,6 +172,11 @@ main()
   check("nu = 0.5", good, {"Material/Poisson ratio=0.5"});
   check("nu = -1", good, {"Material/Poisson ratio=-1"});
   check("F < 0", good, {"Contact/Friction coefficient=-0.1"});
+  check("F", good, {"Contact/Friction coefficient=0.1*q"});
+  check("F of itself", good, {"Contact/Friction coefficient=2*F"});
+  check("F twice",
+        good,
+        {"Contact/Friction coefficient=r", "Scene/Definitions=r = x; F = y"});
   check("size", good, {"Scene/Size=1, -1"});
   check("size", good, {"Scene/Size=1, 1/0"});
   check("size", good, {"Scene/Size=1, q"});

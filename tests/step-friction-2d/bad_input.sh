@@ -79,7 +79,9 @@ sed 's/subsection Contact/subsection Contakt/' "$block" >unknown.prm
 bad 'unknown section in a scene file' "did you mean 'Contact'" unknown.prm
 
 bad 'not of the form Section/Entry=value' 'Section/Entry=value' "$block" levels
-bad 'no number' 'give a number' "$block" 'Contact/Friction coefficient=much'
+bad 'no number' 'give a number' "$block" 'Material/Poisson ratio=much'
+bad 'no expression' "'much' cannot be understood" \
+  "$block" 'Contact/Friction coefficient=much'
 bad 'infinite number' 'give a number' "$block" "Material/Young's modulus=inf"
 
 bad 'E = 0' 'must be positive' "$block" "Material/Young's modulus=0"

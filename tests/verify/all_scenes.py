@@ -29,13 +29,13 @@ def row_of(name, directory):
         for column in COLUMNS:
             largest[column] = max(largest[column], verdict.largest[column])
     numbers = " ".join(f"{largest[column]:11.0e}" for column in COLUMNS)
-    return (f"{name:<19} {len(rows):6} {rows[-1]['dofs']:7} {numbers}"
+    return (f"{name:<20} {len(rows):6} {rows[-1]['dofs']:7} {numbers}"
             + ("" if confirmed else "  refuted"), confirmed)
 
 
 def main():
     programs, root, table = sys.argv[1:3], Path(sys.argv[3]), Path(sys.argv[4])
-    lines, failures = [f"{'scene':<19} levels {'dofs':>7} "
+    lines, failures = [f"{'scene':<20} levels {'dofs':>7} "
                        + " ".join(f"{column:>11}" for column in COLUMNS)], 0
     for dim, program in zip((2, 3), programs):
         for scene in sorted((root / f"step-friction-{dim}d/scenes").glob("*.prm")):

@@ -28,6 +28,7 @@ VERIFY = Path(__file__).with_name("friction_verify.py").resolve()
 RUNS = {
     "hertz": (2, ["Refinement/Maximum dofs=600"]),
     "tresca": (2, ["Refinement/Levels=1"]),
+    "ice": (2, ["Refinement/Levels=1"]),
     "stick-slip": (2, ["Refinement/Levels=1"]),
     "incompressible": (2, ["Refinement/Levels=1"]),
     "wheel": (2, ["Refinement/Levels=3"]),
@@ -156,13 +157,18 @@ def change_region(level, _):
     level.cell_regions[0] = 1 - level.cell_regions[0]
 
 
+def change_coefficient(level, _):
+    level.friction_coefficient[-1] *= 1.001
+
+
 def remove_contact_node(level, _):
     """One that touches."""
     keep = np.ones(len(level.contact_nodes), bool)
     keep[np.flatnonzero(level.contact_states > 0)[0]] = False
     for name in ("contact_nodes", "contact_normals", "contact_states",
-                 "friction_bounds"):
-        if getattr(level, name) is not None:
+                 "friction_bounds", "friction_coefficient"):
+        # One that does not vary is a number.
+        if np.ndim(getattr(level, name)) > 0:
             setattr(level, name, getattr(level, name)[keep])
 
 
@@ -211,8 +217,8 @@ def change_mesh(level, _):
 
 
 def check_changes(cases):
-    hertz, rods, tresca, patch, mean, wheel = (
-        cases[name] for name in ("hertz", "crossing-rods", "tresca", "stick-slip",
+    hertz, rods, tresca, ice, patch, mean, wheel = (
+        cases[name] for name in ("hertz", "crossing-rods", "tresca", "ice", "stick-slip",
                                  "incompressible", "wheel"))
     deep = {case.name: 1e-4 * np.abs(case.level.displacement).max()
             for case in cases.values()}
@@ -238,7 +244,7 @@ def check_changes(cases):
                     ["states"])
         case.expect("normal of a node that slides", turn_normal(1, 1.),
                     ["tension", "cone", "slip", "states"])
-    for case in (hertz, rods, patch, mean):
+    for case in (hertz, rods, ice, patch, mean):
         case.expect("less friction", scale("friction_coefficient", .999), ["cone"])
         case.expect("more friction", scale("friction_coefficient", 1.001),
                     ["slip", "states"])
@@ -248,6 +254,9 @@ def check_changes(cases):
         case.expect("the law that uses the obstacle's normals",
                     lambda level, _: setattr(level, "contact_normal", "obstacle"),
                     ["given"])
+    ice.expect("a coefficient of one node", change_coefficient, ["given"])
+    ice.expect("ice elsewhere", lambda level, _: level.friction_coefficient.sort(),
+               ["cone"])
     tresca.expect("less friction", scale("friction_bounds", .999), ["cone"])
     tresca.expect("more friction", scale("friction_bounds", 1.001), ["slip", "states"])
     patch.expect("a traction", change_traction, ["equilibrium"])

@@ -69,6 +69,9 @@ class Level:
         self.contact_nodes = nodes("contact_nodes", 1)
         self.contact_normals = rows("contact_normals", dim)
         self.contact_states = rows("contact_states", 1, int)
+        # Where it varies, one per contact node.
+        self.friction_coefficient = data.get("friction_coefficients",
+                                             self.friction_coefficient)
         self.friction_bounds = data.get("friction_bounds")
         self.obstacle = Obstacle(
             list(zip(rows("plane_points", dim), rows("plane_normals", dim))),
@@ -86,6 +89,7 @@ class Level:
                 or len(self.hanging_nodes) != len(self.hanging_weights)
                 or len(self.tractions) != 4**(dim - 1) * len(self.traction_faces)
                 or len(self.contact_normals) != k or len(self.contact_states) != k
+                or np.shape(self.friction_coefficient) not in ((), (k,))
                 or (self.friction_law == "Tresca" and k > 0
                     and np.shape(self.friction_bounds) != (k,))
                 or (self.body_force is not None and

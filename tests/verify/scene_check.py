@@ -50,7 +50,8 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
 
     def friction():
         law, F = scene["Contact/Friction law"], scene.names["F"]
-        if law == "Coulomb" and F == 0:
+        varies = isinstance(F, str)
+        if law == "Coulomb" and not varies and F == 0:
             law = "none"
         # Without an obstacle there is nothing to point to.
         normal = ("body" if scene["Obstacle/Kind"] == "none"
@@ -62,13 +63,14 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
         verdict.demand(law == level.friction_law and normal == level.contact_normal
                        and is_same,
                        "section 'Contact' is not what the scene says")
-        same("Contact/Friction coefficient", F if law == "Coulomb" else 0.,
-             level.friction_coefficient)
+        nodes = X[level.contact_nodes] @ scene.rotation
+        if law == "Coulomb":
+            if varies:
+                F = np.broadcast_to(scene.evaluate(F, nodes), len(nodes))
+            same("Contact/Friction coefficient", F, level.friction_coefficient)
         if law == "Tresca" and len(level.contact_nodes):
-            bounds = scene.evaluate(scene["Contact/Friction bound"],
-                                    X[level.contact_nodes] @ scene.rotation)
-            same("Contact/Friction bound",
-                 np.broadcast_to(bounds, len(level.contact_nodes)),
+            bounds = scene.evaluate(scene["Contact/Friction bound"], nodes)
+            same("Contact/Friction bound", np.broadcast_to(bounds, len(nodes)),
                  level.friction_bounds)
 
     def boundary_id(key):

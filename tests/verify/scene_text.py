@@ -28,7 +28,7 @@ class SceneText:
             "Material/Poisson ratio")
         self.names = {"E": E, "nu": nu, "lambda": E * nu / (1 + nu) / (1 - 2 * nu),
                       "mu": E / 2 / (1 + nu), "pi": np.pi,
-                      "F": self.number("Contact/Friction coefficient")}
+                      "F": self._coefficient()}
         for part in split(self["Scene/Constants"], ";"):
             name, _, expression = part.partition("=")
             try:
@@ -51,6 +51,14 @@ class SceneText:
 
     def number(self, entry):
         return float(self[entry])
+
+    def _coefficient(self):
+        """A number, or the text of an expression."""
+        text = self["Contact/Friction coefficient"]
+        try:
+            return float(text)
+        except ValueError:
+            return text
 
     def evaluate(self, expression, points=None):
         """At points (n x dim) of the scene before it is turned, or without any."""

@@ -120,7 +120,7 @@ namespace Benchmark
           x[e] = prescribed[e - 1];
         iterate.laws[i] =
           linearize<dim>(node,
-                         F,
+                         F * node.friction_share,
                          stiffness[factor->nodes()[i]],
                          x.data(),
                          r.data(),
@@ -253,7 +253,9 @@ namespace Benchmark
             violations.clear();
             bounds.resize(iterate.laws.size());
             for (unsigned int i = 0; i < bounds.size(); ++i)
-              bounds[i] = F * std::max(0., iterate.r[factor->position(i, 0)]);
+              bounds[i] = F *
+                rotated.problem.contact[factor->nodes()[i]].friction_share *
+                std::max(0., iterate.r[factor->position(i, 0)]);
             evaluate(iterate, &bounds);
           }
         else
@@ -345,7 +347,7 @@ namespace Benchmark
               const NodeValue<dim>    r    = at_node(iterate.r, i);
               iterate.laws[i] =
                 linearize_guess<dim>(node,
-                                     F,
+                                     F * node.friction_share,
                                      state.in_contact(p),
                                      state.normal_force(p),
                                      in_frames.begin() + dim * node.node,

@@ -49,7 +49,7 @@ namespace Benchmark
       {
         const ContactNode<dim> &node = problem.contact[p];
         laws[p]                      = linearize_guess<dim>(node,
-                                       F,
+                                       F * node.friction_share,
                                        state.in_contact(p),
                                        state.normal_force(p),
                                        in_frames.begin() + dim * node.node,
@@ -71,7 +71,7 @@ namespace Benchmark
       {
         const ContactNode<dim> &node = rotated.problem.contact[p];
         laws[p]                      = linearize<dim>(node,
-                                 F,
+                                 F * node.friction_share,
                                  stiffness[p],
                                  in_frames.begin() + dim * node.node,
                                  r.begin() + dim * node.node);
