@@ -107,27 +107,18 @@ namespace Friction
             rounded = 1;
             ++exponent;
           }
-        const double unit = std::pow(10., exponent);
-        const double kept = std::round(value / unit) * unit;
-        if (std::abs(value) < 1e6 && exponent >= -8 && exponent <= 0)
-          std::snprintf(text,
-                        sizeof(text),
-                        "%.*f ± %.*f",
-                        -exponent,
-                        kept,
-                        -exponent,
-                        rounded * unit);
+        const double bar = rounded * std::pow(10., exponent);
+
+        // The value keeps two digits, whatever the error.
+        const int leading =
+          value != 0 ? std::floor(std::log10(std::abs(value))) : exponent;
+        const int last = std::min(exponent, leading - 1);
+        if (last >= -8 && last <= 0 && leading < 6)
+          std::snprintf(
+            text, sizeof(text), "%.*f ± %.*f", -last, value, -last, bar);
         else
-          {
-            const int leading =
-              kept != 0 ? std::floor(std::log10(std::abs(kept))) : exponent;
-            std::snprintf(text,
-                          sizeof(text),
-                          "%.*e ± %.0e",
-                          std::max(0, leading - exponent),
-                          kept,
-                          rounded * unit);
-          }
+          std::snprintf(
+            text, sizeof(text), "%.*e ± %.0e", leading - last, value, bar);
       }
     return text;
   }
