@@ -406,7 +406,9 @@ namespace StepFriction2d
   // <code>make_level_records()</code> turns nodal forces into pressures, sums
   // of forces and half-widths of zones, and keeps of each cycle its increment,
   // its energy, its step length and the number of components that truncation
-  // has taken from coarse functions. The results say how to read them.
+  // has taken from coarse functions. The results say how to read them. How far
+  // pressure, half-widths and forces are from those of a perfect mesh is
+  // estimated from the last few levels, and printed when the run ends.
   //
   // The history is rewritten as a whole after each level and put in place by
   // renaming. A run that is killed leaves all levels that were complete.

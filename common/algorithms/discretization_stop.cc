@@ -37,8 +37,9 @@ namespace Friction
         result.energy_tolerance = caution * share * error *
           std::pow(double(n_dofs_then) / double(n_dofs), 1. / dim);
         result.expected_pace = pace;
-        // Forces at single nodes are known less well than the energy; an error
-        // of a percent is not what the mesh is to be blamed for, more is.
+        // Stresses at single nodes are known less well than the energy. An
+        // error of a percent of the peak pressure is not what the mesh is to be
+        // blamed for, more is.
         result.certificate_tolerance =
           std::max(settings.certificate_tolerance, 1e-2);
       }

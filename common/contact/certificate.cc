@@ -1,4 +1,5 @@
 #include <common/contact/certificate.h>
+#include <common/contact/peak_pressure.h>
 #include <common/parallel/reductions.h>
 
 #include <algorithm>
@@ -23,15 +24,56 @@ namespace Friction
 
 
 
-    std::array<std::pair<const char *, double>, 6>
-    entries(const Certificate &c)
+    struct Entry
     {
-      return {{{"equilibrium", c.equilibrium},
-               {"penetration", c.penetration},
-               {"tension", c.tension},
-               {"complementarity", c.complementarity},
-               {"friction cone", c.cone},
-               {"slip direction", c.slip}}};
+      const char *name;
+      double Certificate::*value;
+    };
+
+    constexpr std::array<Entry, 7> entries = {
+      {{"equilibrium", &Certificate::equilibrium},
+       {"penetration", &Certificate::penetration},
+       {"tension", &Certificate::tension},
+       {"complementarity", &Certificate::complementarity},
+       {"friction cone", &Certificate::cone},
+       {"slip direction", &Certificate::slip},
+       {"state of a node", &Certificate::state}}};
+
+
+
+    // The force that takes a node this far if all others stay where they are:
+    // a^T A_pp a / |a|.
+    template <int dim>
+    double
+    force_for(const DiscreteProblem<dim> &problem,
+              const unsigned int          node,
+              const Tensor<1, dim>       &displacement)
+    {
+      const double length = displacement.norm();
+      if (length == 0)
+        return 0.;
+      NodeValue<dim> a;
+      for (unsigned int d = 0; d < dim; ++d)
+        a[d] = displacement[d] / length;
+      const NodeValue<dim> Aa =
+        times<dim>(problem.stiffness.diagonal_block(node), a.data());
+      return length * dot<dim>(a.data(), Aa.data());
+    }
+
+
+
+    // The part of a vector at a contact node in the first tangents.
+    template <int dim>
+    Tensor<1, dim>
+    tangential_part(const ContactNode<dim> &node,
+                    const VectorType       &v,
+                    const unsigned int      n_tangents = dim - 1)
+    {
+      const auto     components = tangential_components<dim>(node, v);
+      Tensor<1, dim> sum;
+      for (unsigned int t = 0; t < n_tangents; ++t)
+        sum += components[t] * node.frame[t + 1];
+      return sum;
     }
   } // namespace
 
@@ -41,8 +83,8 @@ namespace Friction
   Certificate::largest() const
   {
     double largest = 0;
-    for (const auto &entry : entries(*this))
-      raise(largest, entry.second);
+    for (const Entry &entry : entries)
+      raise(largest, this->*entry.value);
     return largest;
   }
 
@@ -54,27 +96,10 @@ namespace Friction
     std::ostringstream text;
     text.precision(2);
     text << std::scientific;
-    for (const auto &entry : entries(*this))
-      text << (entry.first == entries(*this)[0].first ? "" : ", ")
-           << entry.first << ' ' << entry.second;
+    for (const Entry &entry : entries)
+      text << (&entry == entries.begin() ? "" : ", ") << entry.name << ' '
+           << this->*entry.value;
     return text.str();
-  }
-
-
-
-  template <int dim>
-  double
-  force_of_rounding(const DiscreteProblem<dim> &problem, const VectorType &u)
-  {
-    const NodeBlockMatrix<dim> &A       = problem.stiffness.blocks();
-    double                      largest = 0;
-    for (unsigned int i = 0; i < A.n_rows(); ++i)
-      if (A.row_begin(i) < A.row_end(i))
-        largest = std::max(
-          largest,
-          trace<dim>(A.block(A.row_begin(i))) *
-            std::sqrt(dot<dim>(u.begin() + dim * i, u.begin() + dim * i)));
-    return 1e-8 * max_over_processes(largest, problem.communicator());
   }
 
 
@@ -88,97 +113,96 @@ namespace Friction
   {
     const NodalConstraints<dim> &constraints = problem.constraints;
     const ContactBoundary<dim>  &contact     = problem.contact;
-    std::vector<char>            is_contact_node(constraints.n_owned_nodes(), 0);
-    double force_scale = force_of_rounding(problem, u), length_scale = 0;
+    const PeakPressure<dim>      unit(problem, u, residual, state);
+    std::vector<char> is_contact_node(constraints.n_owned_nodes(), 0);
     for (const ContactNode<dim> &node : contact)
       is_contact_node[node.node] = 1;
 
     Certificate result;
     for (unsigned int node = 0; node < constraints.n_owned_nodes(); ++node)
-      if (!constraints.is_hanging(node))
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            const double r = std::abs(residual.local_element(dim * node + d));
-            force_scale    = std::max(force_scale, r);
-            if (!is_contact_node[node] && !constraints.is_prescribed(node, d))
-              raise(result.equilibrium, r);
-          }
-    for (const ContactNode<dim> &node : contact)
-      for (unsigned int d = 0; d < dim; ++d)
-        length_scale =
-          std::max({length_scale,
-                    std::abs(u.local_element(dim * node.node + d)),
-                    std::abs(normal_component(node, u) - node.gap)});
-    const MPI_Comm comm   = constraints.communicator();
-    const auto     scales = max_over_processes(
-      std::array<double, 2>{{force_scale, length_scale}}, comm);
-    force_scale  = scales[0];
-    length_scale = scales[1];
-    // Without any force or displacement there is nothing to compare with.
-    if (force_scale == 0)
-      force_scale = 1.;
-    if (length_scale == 0)
-      length_scale = 1.;
-    result.equilibrium /= force_scale;
+      if (!constraints.is_hanging(node) && !is_contact_node[node])
+        {
+          double force = 0;
+          for (unsigned int d = 0; d < dim; ++d)
+            if (!constraints.is_prescribed(node, d))
+              raise(force, std::abs(residual.local_element(dim * node + d)));
+          // Few nodes come that far.
+          if (!(unit.relative_force(force, node, problem.face_measures[node]) <=
+                result.equilibrium))
+            raise(result.equilibrium, unit.relative_force_inside(force, node));
+        }
 
     for (unsigned int p = 0; p < contact.size(); ++p)
       {
-        const ContactNode<dim> &node = contact[p];
-        const double pressing = normal_component(node, residual) / force_scale;
-        const double room =
-          (node.gap - normal_component(node, u)) / length_scale;
-        raise(result.penetration, -room);
-        raise(result.tension, -pressing);
-        raise(result.complementarity, std::min(pressing, room));
+        const ContactNode<dim> &node     = contact[p];
+        const auto              relative = [&](const double force) {
+          return unit.relative_force(force, node.node, node.measure);
+        };
+        const auto relative_of_zone = [&](const double force) {
+          const double share =
+            node.measure / std::max(node.measure, unit.contact_measure());
+          return relative(force) * std::pow(share, 1. / (dim - 1));
+        };
 
         // The force on the body at the node, R = A u - f, is minus the
-        // residual.
-        const double tau   = problem.has_coulomb_friction()
-            ? std::max(0., pressing)
-            : state.normal_force(p) / force_scale;
-        const double bound = problem.effective_coefficient(node) * tau;
-        const auto   r_T   = tangential_components<dim>(node, residual);
-        const auto   u_T   = tangential_components<dim>(node, u);
-        double       norm = 0, slip_norm = 0;
-        for (unsigned int t = 0; t < node.n_free_tangents; ++t)
-          norm += r_T[t] * r_T[t];
+        // residual. A distance counts as the force that would close it.
+        const double pressing = normal_component(node, residual);
+        const double room     = node.gap - normal_component(node, u);
+        const double distance =
+          force_for<dim>(problem, node.node, room * node.normal());
+        if (!(room >= 0))
+          raise(result.penetration, relative_of_zone(distance));
+        raise(result.tension, relative(-pressing));
+        raise(result.complementarity,
+              room <= 0 ? 0. : relative(std::min(pressing, distance)));
+
         // A prescribed component takes part in the slip; the force in its
         // direction is a reaction, of which friction is but a part.
-        for (const double component : u_T)
-          slip_norm += component * component;
-        norm      = std::sqrt(norm) / force_scale;
-        slip_norm = std::sqrt(slip_norm);
-        raise(result.cone, norm - bound);
+        const double tau   = problem.has_coulomb_friction()
+            ? std::max(0., pressing)
+            : state.normal_force(p);
+        const double bound = problem.effective_coefficient(node) * tau;
+        const auto r_T = tangential_part(node, residual, node.n_free_tangents);
+        const auto u_T = tangential_part(node, u);
+        const double slip     = force_for<dim>(problem, node.node, u_T);
+        const auto   slips_by = tangential_part(node, u, node.n_free_tangents) /
+          (slip == 0 ? 1. : u_T.norm());
+        raise(result.cone, relative(r_T.norm() - bound));
 
         // Where it slides the force opposes the slip with full strength. Like
         // complementarity this is a choice of two, so that rounding in the
         // displacement of a sticking node is no violation.
-        double deviation = 0;
-        for (unsigned int t = 0; t < node.n_free_tangents; ++t)
-          if (slip_norm > 0)
-            deviation +=
-              std::pow(r_T[t] / force_scale - bound * u_T[t] / slip_norm, 2);
         raise(result.slip,
-              std::min(std::sqrt(deviation), slip_norm / length_scale));
+              slip == 0
+                ? 0.
+                : relative(std::min((r_T - bound * slips_by).norm(), slip)));
+
+        // The state of the node has made these choices.
+        const bool touches = state.in_contact(p);
+        raise(result.state,
+              touches ? relative_of_zone(distance)
+                      : relative(std::abs(pressing)));
+        if (!problem.has_friction() || node.n_free_tangents == 0 ||
+            (problem.has_coulomb_friction() && !touches))
+          continue;
+        const double missing =
+          bound * (slip == 0 ? 1. : slips_by.norm()) - r_T.norm();
+        raise(result.state,
+              state.sticks(p) ? relative_of_zone(slip) : relative(missing));
       }
 
     // The largest on any process. What is not a number must not get lost.
+    const MPI_Comm comm = constraints.communicator();
     if (Utilities::MPI::n_mpi_processes(comm) > 1)
       {
-        const std::array<double *, 6> values = {{&result.equilibrium,
-                                                 &result.penetration,
-                                                 &result.tension,
-                                                 &result.complementarity,
-                                                 &result.cone,
-                                                 &result.slip}};
-        std::array<double, 6>         all;
-        for (unsigned int i = 0; i < values.size(); ++i)
-          all[i] = std::isnan(*values[i])
+        std::array<double, entries.size()> all;
+        for (unsigned int i = 0; i < all.size(); ++i)
+          all[i] = std::isnan(result.*entries[i].value)
             ? std::numeric_limits<double>::infinity()
-            : *values[i];
+            : result.*entries[i].value;
         all = max_over_processes(all, comm);
-        for (unsigned int i = 0; i < values.size(); ++i)
-          *values[i] = all[i];
+        for (unsigned int i = 0; i < all.size(); ++i)
+          result.*entries[i].value = all[i];
       }
     return result;
   }
@@ -193,9 +217,4 @@ namespace Friction
                                         const VectorType &,
                                         const VectorType &,
                                         const ContactState &);
-
-  template double force_of_rounding(const DiscreteProblem<2> &,
-                                    const VectorType &);
-  template double force_of_rounding(const DiscreteProblem<3> &,
-                                    const VectorType &);
 } // namespace Friction

@@ -6,6 +6,8 @@
 #include <common/nodes/nodal_constraints.h>
 #include <common/parameters/solver_settings.h>
 
+#include <vector>
+
 namespace Friction
 {
   /**
@@ -26,6 +28,10 @@ namespace Friction
 
     const NodalConstraints<dim> &constraints;
     const ContactBoundary<dim>  &contact;
+
+    /// Of a face through each owned node, $h^{d-1}$ with the size h of the
+    /// largest cell around it: a stress times this is a force at the node.
+    const std::vector<double> &face_measures;
 
     FrictionLaw friction_law;
 

@@ -18,6 +18,8 @@
 
 #include <deal.II/numerics/vector_tools.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -69,6 +71,7 @@ namespace Friction
                                    RunPart::contact);
     contact_boundary = std::make_unique<ContactBoundary<dim>>(
       the_mapping, dofs, hanging, *nodal_constraints, the_scene);
+    measure_faces();
     const FrictionLaw law = the_scene.friction_law();
     discrete_problem =
       std::make_unique<DiscreteProblem<dim>>(DiscreteProblem<dim>{
@@ -76,6 +79,7 @@ namespace Friction
         forces,
         *nodal_constraints,
         *contact_boundary,
+        face_measures,
         law,
         law == FrictionLaw::tresca ? 1.
                                    : contact_boundary->largest_coefficient()});
@@ -139,6 +143,29 @@ namespace Friction
     }
     nodal_constraints = std::make_unique<NodalConstraints<dim>>(
       dofs, hanging, prescribed, assembler->coupled_dofs());
+  }
+
+
+
+  // A process knows all cells around its own nodes.
+  template <int dim>
+  void
+  Discretization<dim>::measure_faces()
+  {
+    face_measures.assign(nodal_constraints->n_owned_nodes(), 0.);
+    for (const auto &cell : dofs.active_cell_iterators())
+      if (!cell->is_artificial())
+        {
+          const double measure =
+            std::pow(cell->measure(), double(dim - 1) / dim);
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              const unsigned int node =
+                nodal_constraints->node_of_dof(cell->vertex_dof_index(v, 0));
+              if (node < face_measures.size())
+                face_measures[node] = std::max(face_measures[node], measure);
+            }
+        }
   }
 
 

@@ -19,6 +19,7 @@
 #include <deal.II/lac/affine_constraints.h>
 
 #include <memory>
+#include <vector>
 
 namespace Friction
 {
@@ -51,7 +52,7 @@ namespace Friction
    * @code
    *   Discretization<dim> discretization(scene, mesh);
    *   discretization.set_up();
-   *   discretization.assemble(elasticity<dim>(scene.material()));
+   *   discretization.assemble(elasticity<dim>(scene.materials()));
    *
    *   VectorType         u(discretization.constraints().partitioner());
    *   VectorType         no_tractions(u);
@@ -176,10 +177,13 @@ namespace Friction
     std::unique_ptr<NodalConstraints<dim>> nodal_constraints;
     std::unique_ptr<ContactBoundary<dim>>  contact_boundary;
     std::unique_ptr<DiscreteProblem<dim>>  discrete_problem;
+    std::vector<double>                    face_measures;
 
     double seconds_of_set_up = 0, seconds_of_assembly = 0;
 
     void find_constraints();
+
+    void measure_faces();
   };
 } // namespace Friction
 

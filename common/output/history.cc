@@ -185,6 +185,14 @@ namespace Friction
       write("max_pressure", &LevelRecord::max_pressure);
       write("contact_half_width", &LevelRecord::contact_half_width);
       write("stick_half_width", &LevelRecord::stick_half_width);
+      write("normal_force_error", &LevelRecord::normal_force_error);
+      write("tangential_force_error", &LevelRecord::tangential_force_error);
+      write("max_pressure_error", &LevelRecord::max_pressure_error);
+      write("contact_half_width_error", &LevelRecord::contact_half_width_error);
+      write("stick_half_width_error", &LevelRecord::stick_half_width_error);
+      write("pressure_resolution", &LevelRecord::pressure_resolution);
+      write("contact_resolution", &LevelRecord::contact_resolution);
+      write("stick_resolution", &LevelRecord::stick_resolution);
       write("estimated_error", &LevelRecord::estimated_error);
       write("certificate", &LevelRecord::certificate);
       write("setup_seconds", &LevelRecord::setup_seconds);

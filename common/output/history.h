@@ -61,6 +61,22 @@ namespace Friction
     double contact_half_width = 0.;
     double stick_half_width   = 0.;
 
+    /// Estimated errors of these five, of the same units; negative if unknown.
+    /// See set_errors().
+    double normal_force_error       = -1.;
+    double tangential_force_error   = -1.;
+    double max_pressure_error       = -1.;
+    double contact_half_width_error = -1.;
+    double stick_half_width_error   = -1.;
+
+    /// By how much the last three may be wrong because nodes are a distance
+    /// apart. Pressure: the difference of the largest one and the mean of its
+    /// neighbours. Widths: half of the measure of those nodes of the zone that
+    /// have a neighbour outside.
+    double pressure_resolution = 0.;
+    double contact_resolution  = 0.;
+    double stick_resolution    = 0.;
+
     /// Estimated error in the energy norm.
     double estimated_error = 0.;
 
@@ -78,8 +94,12 @@ namespace Friction
       archive &level &cells &dofs &contact_nodes               &sticky_nodes;
       archive &outer_iterations &cycles &attempts &contraction &rho_tau;
       archive &rho_tau_contraction &energy &algebraic_error    &normal_force;
-      archive                                              &tangential_force;
-      archive &max_pressure &contact_half_width            &stick_half_width;
+      archive                                   &tangential_force;
+      archive &max_pressure &contact_half_width &stick_half_width;
+      archive &normal_force_error               &tangential_force_error;
+      archive &max_pressure_error               &contact_half_width_error;
+      archive &stick_half_width_error           &pressure_resolution;
+      archive &contact_resolution               &stick_resolution;
       archive &estimated_error &certificate &setup_seconds &solve_seconds;
     }
   };

@@ -1,6 +1,7 @@
 #include <common/algorithms/safeguarded_solver.h>
 #include <common/contact/contact_forces.h>
 #include <common/output/level_records.h>
+#include <common/parallel/reductions.h>
 #include <common/parallel/run_clock.h>
 
 #include <deal.II/base/mpi.h>
@@ -41,6 +42,88 @@ namespace Friction
       });
       return all;
     }
+    // What the neighbours of contact nodes do, on this process and others, says
+    // where zones end, and how far the largest pressure stands out.
+    template <int dim>
+    void
+    set_resolutions(LevelRecord               &record,
+                    const Discretization<dim> &discretization,
+                    const ContactState        &state,
+                    const VectorType          &residual)
+    {
+      const ContactBoundary<dim> &contact = discretization.contact();
+      const NodeBlockMatrix<dim> &A       = discretization.stiffness().blocks();
+      const MPI_Comm comm = discretization.constraints().communicator();
+
+      // Of each node a phase, which is zero where there can be no contact, and
+      // a pressure.
+      enum Phase
+      {
+        open = 1,
+        slides,
+        sticks
+      };
+      VectorType values = discretization.vector();
+      for (unsigned int p = 0; p < contact.size(); ++p)
+        {
+          const unsigned int i    = dim * contact[p].node;
+          values.local_element(i) = !state.in_contact(p) ? open
+            : state.sticks(p)                            ? sticks
+                                                         : slides;
+          if (state.in_contact(p))
+            values.local_element(i + 1) =
+              normal_component(contact[p], residual) / contact[p].measure;
+        }
+      discretization.stiffness().update_ghosts(values);
+
+      // Half of what stands at the rims of both zones, the measures of the
+      // zones themselves, and the peak.
+      std::array<double, 4> sums{};
+      double                peak = 0, stands_out = 0;
+      for (unsigned int p = 0; p < contact.size(); ++p)
+        {
+          const unsigned int node  = contact[p].node;
+          const double       phase = values.local_element(dim * node);
+          const double       m     = contact[p].measure;
+          if (phase < slides)
+            continue;
+          bool         next_to_open = false, next_to_slip = false;
+          double       sum = 0;
+          unsigned int n   = 0;
+          for (std::size_t e = A.row_begin(node) + 1; e < A.row_end(node); ++e)
+            {
+              const unsigned int j     = dim * A.column(e);
+              const double       other = values.local_element(j);
+              if (other < open)
+                continue;
+              next_to_open = next_to_open || other == open;
+              next_to_slip = next_to_slip || other < sticks;
+              sum += values.local_element(j + 1);
+              ++n;
+            }
+          sums[0] += m;
+          sums[1] += next_to_open ? .5 * m : 0.;
+          sums[2] += phase == sticks ? m : 0.;
+          sums[3] += phase == sticks && next_to_slip ? .5 * m : 0.;
+          const double pressure = values.local_element(dim * node + 1);
+          if (pressure > peak)
+            {
+              peak       = pressure;
+              stands_out = std::abs(pressure - (n > 0 ? sum / n : 0.));
+            }
+        }
+      sums                 = sum_over_processes(sums, comm);
+      const double highest = max_over_processes(peak, comm);
+      record.pressure_resolution =
+        max_over_processes(peak == highest ? stands_out : 0., comm);
+
+      // The derivative of the half-width with respect to the measure.
+      const auto resolution = [&](const double zone, const double rim) {
+        return zone > 0 ? rim * half_width<dim>(zone) / ((dim - 1) * zone) : 0.;
+      };
+      record.contact_resolution = resolution(sums[0], sums[1]);
+      record.stick_resolution   = resolution(sums[2], sums[3]);
+    }
   } // namespace
 
 
@@ -80,6 +163,8 @@ namespace Friction
     const MPI_Comm communicator = constraints.communicator();
     record.contact_nodes = Utilities::MPI::sum(state.n_contact(), communicator);
     record.sticky_nodes = Utilities::MPI::sum(state.n_sticking(), communicator);
+
+    set_resolutions(record, discretization, state, report.residual);
 
     // What is summed up over the nodes, here of this process.
     Tensor<1, dim> tangential_force;

@@ -1,4 +1,5 @@
 #include <common/compatibility.h>
+#include <common/output/level_errors.h>
 #include <common/output/profile.h>
 #include <common/output/run_output.h>
 #include <common/output/warnings.h>
@@ -90,6 +91,8 @@ namespace Friction
                             const ContactState        &state)
   {
     const RunScope part(communicator, RunPart::records);
+    if (history.levels().back().contact_nodes > 0)
+      the_console.note(describe_quantities(history.levels().back()));
     for (const std::string &warning :
          warnings_at_end(discretization, displacement, state))
       the_console.warning(warning);
@@ -130,7 +133,9 @@ namespace Friction
     on_first_process(communicator,
                      [&]() { verification.remove(records.level.level); });
 
-    the_console.level_complete(records.level);
+    LevelRecord record = records.level;
+    set_errors(record, history.levels(), dim);
+    the_console.level_complete(record);
     if (!records.attempts.empty())
       the_console.note(records.attempts);
     if (parameters.output.profile)
@@ -138,8 +143,7 @@ namespace Friction
         describe_profile(records,
                          parameters.output.times,
                          discretization.constraints().communicator()));
-    history.add_level(
-      records.level, records.cycles, records.contact, records.outer);
+    history.add_level(record, records.cycles, records.contact, records.outer);
     if (parameters.output.fields)
       {
         const RunScope part_of_fields(communicator, RunPart::fields);

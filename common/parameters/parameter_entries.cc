@@ -412,8 +412,8 @@ namespace Friction
        "Certificate tolerance",
        "1e-6",
        positive,
-       "Largest residual of the discrete law of a valid solution, relative "
-       "to the largest nodal force or gap; at least 0.01 with the inner "
+       "By how much, relative to the peak contact pressure, a valid solution "
+       "may violate the discrete law at any node; at least 0.01 with the inner "
        "tolerance 'discretisation'."},
       {"Solver",
        "Maximum cycles",

@@ -102,8 +102,8 @@ namespace Friction
     /// Relative change of the normal forces at which Algorithm 2 stops.
     double outer_tolerance = 2e-7;
 
-    /// Largest residual of the discrete law, relative to the largest nodal
-    /// force or gap, with which a solution is certified.
+    /// Largest violation of the discrete law at a node with which a solution
+    /// is certified, see Certificate: a part of the peak contact pressure.
     double certificate_tolerance = 1e-6;
 
     unsigned int maximum_cycles = 200;

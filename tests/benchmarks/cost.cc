@@ -53,6 +53,7 @@ namespace Benchmark
                                            problem.forces,
                                            problem.constraints,
                                            nothing,
+                                           problem.face_measures,
                                            FrictionLaw::none,
                                            0.};
     const auto                  seconds = [&](const DiscreteProblem<dim> &which,
@@ -142,6 +143,7 @@ namespace Benchmark
                                                   problem.forces,
                                                   bonded,
                                                   nothing,
+                                                  problem.face_measures,
                                                   FrictionLaw::none,
                                                   0.},
                                          without_safeguards(parameters.solver));

@@ -111,6 +111,7 @@ namespace
                                               disc.forces,
                                               held,
                                               contact,
+                                              disc.face_measures,
                                               disc.friction_law,
                                               disc.friction_coefficient};
         AssertThrow(contact.size() <= 1, ExcInternalError());

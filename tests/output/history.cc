@@ -84,6 +84,8 @@ main(int argc, char **argv)
                            "max_pressure",
                            "contact_half_width",
                            "stick_half_width",
+                           "contact_half_width_error",
+                           "contact_resolution",
                            "estimated_error",
                            "certificate",
                            "setup_seconds",

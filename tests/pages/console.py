@@ -10,6 +10,8 @@ RELATIVE, ABSOLUTE = 2e-5, 1e-9
 GAP = "..."
 # Printed in between where something takes long, as on a busy machine.
 PROGRESS = re.compile(r" *level \d+: cycle \d+, increment ")
+# What a run ends with; a page need not show it.
+QUANTITIES = re.compile(r"Peak pressure p = ")
 
 
 class Comparison:
@@ -20,6 +22,9 @@ class Comparison:
         self.shown = [(number, line) for number, line in shown if line.strip()]
         self.printed = [line for line in printed.splitlines()
                         if line.strip() and not PROGRESS.match(line)]
+        if not any(QUANTITIES.match(line) for _, line in self.shown):
+            self.printed = [line for line in self.printed
+                            if not QUANTITIES.match(line)]
         self.shortened = shortened
         self.offences = []       # (line of the page, sentence)
         self.last_shown = False  # whether the last line printed has been shown

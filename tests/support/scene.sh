@@ -45,6 +45,7 @@ awk -v bound="$cycles" '
     print $1, $2, $3, $4, $5, $6, ($7 <= bound ? "few" : $7), $9
     next
   }
+  /^Peak pressure/ {next}
   /exact to/ {sub(/energy norm [^,]*,/, "rounding,")}
   {print}' "$work/output" >"$work/table"
 

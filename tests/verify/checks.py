@@ -110,28 +110,52 @@ def unbalanced(found):
     level = found.level
     free = ~level.is_prescribed & ~found.is_hanging[:, None]
     free[level.contact_nodes] = False
-    return np.abs(np.where(free, found.r, 0)) / found.force
+    return np.abs(np.where(free, found.r, 0)) / found.unit[:, None]
+
+
+def depth(found):
+    return (np.maximum(-found.room, 0) * found.stiffness_n * found.zone
+            / found.contact_unit)
 
 
 def pulling(found):
-    return np.maximum(-found.pressing, 0) / found.force
+    return np.maximum(-found.pressing, 0) / found.contact_unit
 
 
-def at_distance(found, length):
-    """Of force and distance the smaller one."""
-    return np.maximum(np.minimum(found.pressing / found.force, found.room / length), 0)
+def at_distance(found):
+    """Of the force, and of that which would close the distance, the smaller one."""
+    closing = found.stiffness_n * found.room
+    return np.maximum(np.minimum(found.pressing, closing), 0) / found.contact_unit
 
 
 def beyond_cone(found):
-    return np.maximum(found.drag - found.bound, 0) / found.force
+    return np.maximum(found.drag - found.bound, 0) / found.contact_unit
 
 
-def wrong_slip(found, length):
+def wrong_slip(found):
     """A node has not moved, or friction acts against its slip with full strength: of
     the two violations the smaller one."""
     full = found.bound[:, None] * found.direction
-    deviation = np.linalg.norm(found.r_T - full, axis=1) / found.force
-    return np.where(found.can_slide, np.minimum(deviation, found.slip / length), 0)
+    deviation = np.linalg.norm(found.r_T - full, axis=1)
+    wrong = np.minimum(deviation, found.stiffness_T * found.slip) / found.contact_unit
+    return np.where(found.can_slide, wrong, 0)
+
+
+def wrong_states(found):
+    """What is not as nodes are said to be, by name."""
+    state, unit = found.level.contact_states, found.contact_unit
+    rubs = found.can_slide & (found.level.friction_law != "none")
+    if found.level.friction_law == "Coulomb":
+        rubs &= state > 0
+    # A prescribed component of the slip leaves but a share of the bound to the others.
+    share = np.where(found.slip > 0, np.linalg.norm(found.direction, axis=1), 1)
+    missing = np.maximum(found.bound * share - found.drag, 0)
+    apart = found.stiffness_n * np.abs(found.room) * found.zone
+    slip = found.stiffness_T * found.slip * found.zone
+    return {"open": np.where(state == 0, np.abs(found.pressing), 0) / unit,
+            "touches": np.where(state > 0, apart, 0) / unit,
+            "sticks": np.where(rubs & (state == 2), slip, 0) / unit,
+            "slides": np.where(rubs & (state != 2), missing, 0) / unit}
 
 
 def check_equilibrium(verdict, found, tolerance):
@@ -144,22 +168,23 @@ def check_contact(verdict, found, tolerance):
     """No penetration, no tension, no force at a distance. Nodes that are left out,
     since they cannot meet the obstacle along their normals, must not be in it."""
     level, x = found.level, found.x
-    verdict.check("penetration", np.maximum(-found.room, 0) / found.length, tolerance,
+    verdict.check("penetration", depth(found), tolerance,
                   "a node is inside of the obstacle", x)
     others = left_out(found)
     places = level.vertices[others]
     depths = level.obstacle.depth(places + found.u[others])
-    verdict.check("penetration", depths / found.length, tolerance,
+    per_length = np.max(found.stiffness_n * found.zone / found.contact_unit, initial=0)
+    verdict.check("penetration", depths * per_length, tolerance,
                   "a node that is left out is inside of the obstacle", places)
     verdict.check("tension", pulling(found), tolerance, "the obstacle pulls", x)
-    verdict.check("tension", at_distance(found, found.length), tolerance,
+    verdict.check("tension", at_distance(found), tolerance,
                   "the obstacle pushes from a distance", x)
 
 
 def check_friction(verdict, found, tolerance):
     verdict.check("cone", beyond_cone(found), tolerance, "friction is beyond its bound",
                   found.x)
-    verdict.check("slip", wrong_slip(found, found.length), tolerance,
+    verdict.check("slip", wrong_slip(found), tolerance,
                   "friction does not oppose the slip as it should", found.x)
 
 
@@ -167,23 +192,17 @@ def check_states(verdict, found, tolerance):
     """Nodes do what they are said to do. The law alone does not tell: a node that has
     not moved may stick, or be about to slide."""
     x, state = found.x, found.level.contact_states
-    opens, slides, sticks = (state == s for s in (0, 1, 2))
-    verdict.demand(np.all(opens | slides | sticks), "a contact node has no known state",
+    verdict.demand(np.all(np.isin(state, (0, 1, 2))), "a contact node has no known state",
                    "states")
-    verdict.check("states", np.where(opens, np.abs(found.pressing), 0) / found.force,
-                  tolerance, "there is a force at a node that is said to be open", x)
-    verdict.check("states", np.where(opens, 0, np.abs(found.room)) / found.length,
-                  tolerance, "a node that is said to touch does not", x)
-    verdict.check("states", np.where(sticks, found.slip, 0) / found.length, tolerance,
-                  "a node that is said to stick has moved", x)
-    verdict.demand(found.level.friction_law != "none" or not np.any(sticks),
+    verdict.demand(found.level.friction_law != "none" or not np.any(state == 2),
                    "a node is said to stick, and there is no friction", "states")
-    # A prescribed component of the slip leaves but a share of the bound to the others.
-    share = np.where(found.slip > tolerance * found.length,
-                     np.linalg.norm(found.direction, axis=1), 1)
-    missing = np.where(slides & found.can_slide, found.bound * share - found.drag, 0)
-    verdict.check("states", np.maximum(missing, 0) / found.force, tolerance,
-                  "a node that is said to slide bears less friction than it can", x)
+    wrong = wrong_states(found)
+    for name, sentence in (
+            ("open", "there is a force at a node that is said to be open"),
+            ("touches", "a node that is said to touch does not"),
+            ("sticks", "a node that is said to stick has moved"),
+            ("slides", "a node that is said to slide bears less friction than it can")):
+        verdict.check("states", wrong[name], tolerance, sentence, x)
 
 
 # What is reported.
@@ -191,10 +210,10 @@ def check_states(verdict, found, tolerance):
 
 def check_certificate(verdict, found, reported, tolerance):
     """By its own definition."""
-    length, said = found.wide_length, reported["certificate"]
+    said = reported["certificate"]
     verdict.certificate = max(np.max(part, initial=0) for part in (
-        unbalanced(found), -found.room / length, pulling(found),
-        at_distance(found, length), beyond_cone(found), wrong_slip(found, length)))
+        unbalanced(found), depth(found), pulling(found), at_distance(found),
+        beyond_cone(found), wrong_slip(found), *wrong_states(found).values()))
     verdict.check(None, max(verdict.certificate - said, 0), .1 * tolerance,
                   f"the certificate is reported to be {said:.1e} and is "
                   f"{verdict.certificate:.1e}, which is more by")

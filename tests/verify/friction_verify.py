@@ -24,10 +24,10 @@ A row per level:
                scene says, compared with what the run made of it
   energy       difference from the reported energy, relative to its parts
 
-Forces are relative to the largest nodal force, lengths to the largest displacement of a
-node that may get into contact. All but 'given', which is exact, may be as large as the
-tolerance of the certificate in the scene, or X. The certificate itself, whose lengths
-are relative to the largest gap if that is larger, must not be worse than reported.
+Forces at nodes are relative to that of the peak contact pressure, lengths count as the
+forces that they need: the units of the certificate. All but 'given', which is exact, may
+be as large as the tolerance of the certificate in the scene, or X. The certificate itself
+must not be worse than reported.
 
 Exit status: 0 confirmed, 1 refuted, 2 if there is nothing that could be read.
 """

@@ -12,42 +12,59 @@ def add_up(n_nodes, nodes, values):
                      for d in range(values.shape[-1])], axis=-1)
 
 
-def body_integrals(level):
-    """Nodal internal forces A u (nodes x dim) with hanging nodes not yet condensed, the
-    strain energy, and the trace of the diagonal block of each node.
-
-    Linear elasticity, in two dimensions plane strain: sigma = lambda theta I + 2 mu eps
-    with theta the divergence of the displacement, or its mean over the cell."""
-    dim = level.dim
-    E, nu, averaged = level.materials[level.cell_regions].T
-    lame, mu = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
-    X, U = level.vertices[level.cells], level.displacement[level.cells]
-    points, weights = gauss_points(2, dim)
+def at_gauss_points(level, cells):
+    """For each point of the Gauss rule, of the cells with these numbers: gradients of
+    the shape functions (k x corners x dim) and weights (k)."""
+    points, weights = gauss_points(2, level.dim)
     _, on_unit_cell = corner_functions(points)
-
-    at_points, volume, expansion, mean_gradient = [], 0, 0, 0
+    X, result = level.vertices[level.cells[cells]], []
     for q, weight in enumerate(weights):
         # J_de = d x_d / d xi_e; shape functions have gradients G = (d xi / d x)^T.
         J = np.einsum("kvd,ve->kde", X, on_unit_cell[q])
         dx = np.linalg.det(J) * weight
         if not np.all(dx > 0):
             raise NotReadable("the mesh has cells that are turned inside out.")
-        G = np.einsum("ve,ked->kvd", on_unit_cell[q], np.linalg.inv(J))
-        gradient = np.einsum("kvi,kvj->kij", U, G)
-        at_points.append((G, gradient, dx))
-        volume = volume + dx
-        expansion = expansion + dx * np.trace(gradient, axis1=1, axis2=2)
-        mean_gradient = mean_gradient + dx[:, None, None] * G
+        result.append((np.einsum("ve,ked->kvd", on_unit_cell[q], np.linalg.inv(J)), dx))
+    return result
+
+
+def lame_constants(level, cells):
+    """Of each of these cells, and whether its volumetric strain is the mean."""
+    E, nu, averaged = level.materials[level.cell_regions[cells]].T
+    return E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu)), averaged > 0
+
+
+def mean_of(values, at_points):
+    """Over each cell, of values (k x ...) at its points."""
+    volume = sum(dx for _, dx in at_points)
+    total = sum(np.einsum("k,k...->k...", dx, v) for v, (_, dx) in zip(values, at_points))
+    return np.einsum("k,k...->k...", 1 / volume, total)
+
+
+def body_integrals(level):
+    """Nodal internal forces A u (nodes x dim) with hanging nodes not yet condensed, the
+    strain energy, the trace of the diagonal block of each node, likewise, and the
+    volume of each cell.
+
+    Linear elasticity, in two dimensions plane strain: sigma = lambda theta I + 2 mu eps
+    with theta the divergence of the displacement, or its mean over the cell."""
+    dim, cells = level.dim, np.arange(len(level.cells))
+    lame, mu, averaged = lame_constants(level, cells)
+    U = level.displacement[level.cells]
+    at_points = at_gauss_points(level, cells)
+    gradients = [np.einsum("kvi,kvj->kij", U, G) for G, _ in at_points]
+    if averaged.any():
+        expansion = mean_of([np.trace(g, axis1=1, axis2=2) for g in gradients],
+                            at_points)
+        mean_gradient = mean_of([G for G, _ in at_points], at_points)
 
     forces, diagonal, energy = 0, 0, 0.
-    for G, gradient, dx in at_points:
+    for (G, dx), gradient in zip(at_points, gradients):
         strain = (gradient + gradient.transpose(0, 2, 1)) / 2
-        theta = np.trace(strain, axis1=1, axis2=2)
-        H = G
+        theta, H = np.trace(strain, axis1=1, axis2=2), G
         if averaged.any():
-            theta = np.where(averaged > 0, expansion / volume, theta)
-            H = np.where(averaged[:, None, None] > 0,
-                         mean_gradient / volume[:, None, None], G)
+            theta = np.where(averaged, expansion, theta)
+            H = np.where(averaged[:, None, None], mean_gradient, G)
         # A mean is the same at all points of the cell, so that of the divergence of a
         # test function its integral remains, as it should.
         stress = (2 * mu[:, None, None] * strain
@@ -59,7 +76,65 @@ def body_integrals(level):
             lame[:, None] * np.sum(H**2, axis=2)
             + mu[:, None] * (1 + dim) * np.sum(G**2, axis=2))
     return (add_up(level.n_nodes, level.cells, forces), energy,
-            add_up(level.n_nodes, level.cells, diagonal[..., None])[:, 0])
+            add_up(level.n_nodes, level.cells, diagonal[..., None])[:, 0],
+            sum(dx for _, dx in at_points))
+
+
+class Rows:
+    """Rows of the matrix at some nodes, hanging nodes condensed: a node moves those
+    that hang on it. diagonal: blocks (k x dim x dim)."""
+
+    def __init__(self, level, nodes, hanging):
+        self.level, self.nodes, self.hanging = level, np.asarray(nodes, int), hanging
+        place = {node: i for i, node in enumerate(self.nodes.tolist())}
+        near = np.zeros(level.n_nodes, bool)
+        near[self.nodes] = True
+        for node, masters in hanging.items():
+            near[node] = any(master in place for master in masters)
+        pairs = {}
+        for k in np.flatnonzero(near[level.cells].any(axis=1)).tolist():
+            for corner, vertex in enumerate(level.cells[k].tolist()):
+                for master, weight in hanging.get(vertex, {vertex: 1.}).items():
+                    if master in place:
+                        weights = pairs.setdefault((place[master], k),
+                                                   np.zeros(2**level.dim))
+                        weights[corner] += weight
+        self.at, self.cells = np.array(list(pairs) or [(0, 0)]).T
+        weights = np.array(list(pairs.values()) or [np.zeros(2**level.dim)])
+
+        # Blocks of the node and each corner of the cell.
+        lame, mu, averaged = lame_constants(level, self.cells)
+        at_points = at_gauss_points(level, self.cells)
+        own = [np.einsum("kv,kvd->kd", weights, G) for G, _ in at_points]
+        h, H = mean_of(own, at_points), mean_of([G for G, _ in at_points], at_points)
+        blocks = 0
+        for (G, dx), g in zip(at_points, own):
+            first = np.where(averaged[:, None], h, g)
+            second = np.where(averaged[:, None, None], H, G)
+            blocks = (blocks
+                      + np.einsum("k,ki,kvj->kvij", dx * lame, first, second)
+                      + np.einsum("k,kj,kvi->kvij", dx * mu, g, G)
+                      + np.einsum("k,kl,kvl->kv", dx * mu, g, G)[:, :, None, None]
+                      * np.eye(level.dim))
+        self.blocks = blocks
+        self.diagonal = np.zeros((len(self.nodes), level.dim, level.dim))
+        np.add.at(self.diagonal, self.at, np.einsum("kv,kvij->kij", weights, blocks))
+
+    def forces_of_neighbours(self, u):
+        """For each node half the sum of |A_pq (u_q - u_p)| over its neighbours q."""
+        couplings = {}
+        for i, k, blocks in zip(self.at.tolist(), self.cells.tolist(), self.blocks):
+            for corner, vertex in enumerate(self.level.cells[k].tolist()):
+                for q, weight in self.hanging.get(vertex, {vertex: 1.}).items():
+                    couplings[i, q] = couplings.get((i, q), 0) + weight * blocks[corner]
+        result = np.zeros(len(self.nodes))
+        if not couplings or not len(self.nodes):
+            return result
+        at, others = np.array(list(couplings)).T
+        forces = np.einsum("kij,kj->ki", np.array(list(couplings.values())),
+                           u[others] - u[self.nodes[at]])
+        np.add.at(result, at, np.linalg.norm(forces, axis=1) / 2)
+        return result
 
 
 def area_vectors(corners, points):

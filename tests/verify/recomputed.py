@@ -4,7 +4,7 @@ import numpy as np
 
 from contact_boundary import ContactBoundary
 from hanging_nodes import find_hanging_nodes
-from nodal_forces import body_integrals, nodal_loads
+from nodal_forces import Rows, body_integrals, nodal_loads
 
 
 class Recomputed:
@@ -37,19 +37,25 @@ class Recomputed:
         self.is_hanging = np.zeros(level.n_nodes, bool)
         self.is_hanging[list(self.hanging)] = True
 
-        internal, self.strain_energy, diagonal = body_integrals(level)
+        internal, self.strain_energy, diagonal, volumes = body_integrals(level)
         loads = nodal_loads(level, level.body_force, level.traction_faces,
                             level.tractions)
         self.work = np.sum(loads * self.u)
-        self.r = loads - internal
-        for node, masters in self.hanging.items():
-            for master, weight in masters.items():
-                self.r[master] += weight * self.r[node]
-            self.r[node] = 0
+        self.r = self._condensed(loads - internal)
 
         self.boundary = ContactBoundary(level, self.hanging)
         self._look_at_contact_nodes()
         self._find_scales(diagonal)
+        self._find_units(diagonal, volumes)
+
+    def _condensed(self, forces):
+        """What a hanging node gets, its masters get."""
+        result = forces.copy()
+        for node, masters in self.hanging.items():
+            for master, weight in masters.items():
+                result[master] += weight * result[node]
+            result[node] = 0
+        return result
 
     def _look_at_contact_nodes(self):
         level, nodes, normals = (self.level, self.level.contact_nodes,
@@ -87,9 +93,63 @@ class Recomputed:
         # errors.
         self.rounding = 1e-8 * np.max(diagonal * np.linalg.norm(self.u, axis=1)
                                       * ~self.is_hanging)
-        self.force = max(np.abs(self.r).max(), self.rounding) or 1.
-        self.length = np.abs(self.u_c).max(initial=0) or self.largest_u
-        # That of the certificate. Where a boundary is round the largest gap is that of
-        # a node far off, and no measure of what happens in contact.
-        self.wide_length = max(np.abs(self.u_c).max(initial=0),
-                               np.abs(self.room).max(initial=0)) or 1.
+
+    def _find_units(self, diagonal, volumes):
+        """unit, contact_unit: the force that others are compared with, at each node of
+        the body and at each contact node, that of the peak pressure.
+
+        stiffness_n, stiffness_T: the force per length with which a contact node resists
+        in normal direction, and in that of its slip, the others being held.
+
+        zone: the factor by which the stiffness of the contact zone, for its size, is
+        less than that of the node."""
+        level, nodes = self.level, self.level.contact_nodes
+        size = np.zeros(level.n_nodes)
+        for corner in level.cells.T:
+            np.maximum.at(size, corner, volumes)
+        face = size**((level.dim - 1) / level.dim)
+        touches = level.contact_states > 0
+        self.peak_pressure = np.max((self.pressing / self.measure)[touches], initial=0)
+        if level.friction_law == "Tresca":
+            self.peak_pressure = max(self.peak_pressure,
+                                     np.max(self.bound / self.measure, initial=0))
+        rows = Rows(level, nodes, self.hanging)
+        inside = rows.forces_of_neighbours(self.u) / face[nodes]
+        if not touches.any():
+            free = np.flatnonzero(~self.is_hanging)
+            inside = Rows(level, free, self.hanging).forces_of_neighbours(
+                self.u) / face[free]
+        stress = max(self.peak_pressure, (1e-3 if touches.any() else 1.)
+                     * np.max(inside, initial=0))
+        rounding = 1e-8 * diagonal * np.linalg.norm(self.u, axis=1)
+
+        def unit(measure, at_rounding):
+            result = np.maximum(stress * measure, at_rounding)
+            return np.where(result > 0, result, 1.)
+
+        self.unit = unit(face, rounding)
+        self._raise_unit_inside()
+        self.contact_unit = unit(self.measure, rounding[nodes])
+        n, t = level.contact_normals, self.u_T / np.where(
+            self.slip > 0, self.slip, 1)[:, None]
+        self.stiffness_n = np.einsum("ki,kij,kj->k", n, rows.diagonal, n)
+        self.stiffness_T = np.einsum("ki,kij,kj->k", t, rows.diagonal, t)
+        zone = np.maximum(self.measure, self.measure[touches].sum())
+        self.zone = (self.measure / zone)**(1 / (level.dim - 1))
+
+    def _raise_unit_inside(self):
+        """Where cells bear more than the peak pressure, to what they bear; but only at
+        those nodes that decide what the largest unbalanced force is."""
+        free = ~self.level.is_prescribed & ~self.is_hanging[:, None]
+        free[self.level.contact_nodes] = False
+        force = np.where(free, np.abs(self.r), 0).max(axis=1)
+        order = np.argsort(-force / self.unit)
+        largest = 0.
+        for start in range(0, len(order), 100):
+            some = order[start:start + 100]
+            if not force[some[0]] / self.unit[some[0]] > largest:
+                break
+            rows = Rows(self.level, some, self.hanging)
+            self.unit[some] = np.maximum(self.unit[some],
+                                         rows.forces_of_neighbours(self.u))
+            largest = max(largest, np.max(force[some] / self.unit[some]))

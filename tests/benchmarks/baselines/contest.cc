@@ -181,7 +181,13 @@ namespace Benchmark
   Contest<dim>::bonded_problem() const
   {
     const Discretization<dim> &d = nest.discretization();
-    return {d.stiffness(), d.loads(), bonded, nothing, FrictionLaw::none, 0.};
+    return {d.stiffness(),
+            d.loads(),
+            bonded,
+            nothing,
+            d.problem().face_measures,
+            FrictionLaw::none,
+            0.};
   }
 
 

@@ -1,0 +1,83 @@
+#include <common/contact/peak_pressure.h>
+#include <common/parallel/reductions.h>
+
+#include <array>
+#include <cmath>
+
+namespace Friction
+{
+  template <int dim>
+  PeakPressure<dim>::PeakPressure(const DiscreteProblem<dim> &problem,
+                                  const VectorType           &u,
+                                  const VectorType           &residual,
+                                  const ContactState         &state)
+    : problem(problem)
+    , u(u)
+  {
+    problem.stiffness.update_ghosts(u);
+    double     inside = 0;
+    const bool bounds_are_given =
+      problem.has_friction() && !problem.has_coulomb_friction();
+    for (unsigned int p = 0; p < problem.contact.size(); ++p)
+      {
+        const ContactNode<dim> &node = problem.contact[p];
+        inside = std::max(inside, stress_inside(node.node));
+        if (state.in_contact(p))
+          {
+            touching += node.measure;
+            stress =
+              std::max(stress, normal_component(node, residual) / node.measure);
+          }
+        if (bounds_are_given)
+          stress = std::max(stress,
+                            problem.effective_coefficient() *
+                              state.normal_force(p) / node.measure);
+      }
+    const MPI_Comm comm = problem.communicator();
+    touching            = sum_over_processes(touching, comm);
+    if (touching == 0)
+      for (unsigned int node = 0; node < problem.face_measures.size(); ++node)
+        if (!problem.constraints.is_hanging(node))
+          inside = std::max(inside, stress_inside(node));
+    const auto largest =
+      max_over_processes(std::array<double, 2>{{stress, inside}}, comm);
+    constexpr double barely = 1e-3;
+    stress = std::max(largest[0], (touching > 0 ? barely : 1.) * largest[1]);
+  }
+
+
+
+  template <int dim>
+  double
+  PeakPressure<dim>::stress_inside(const unsigned int node) const
+  {
+    const NodeBlockMatrix<dim> &A   = problem.stiffness.blocks();
+    double                      sum = 0;
+    for (std::size_t e = A.row_begin(node) + 1; e < A.row_end(node); ++e)
+      {
+        NodeValue<dim> difference;
+        for (unsigned int d = 0; d < dim; ++d)
+          difference[d] = u.local_element(dim * A.column(e) + d) -
+            u.local_element(dim * node + d);
+        const NodeValue<dim> force = times<dim>(A.block(e), difference.data());
+        sum += std::sqrt(dot<dim>(force.data(), force.data()));
+      }
+    return .5 * sum / problem.face_measures[node];
+  }
+
+
+
+  template <int dim>
+  double
+  PeakPressure<dim>::force_of_rounding(const unsigned int node) const
+  {
+    const double *u_p = u.begin() + dim * node;
+    return 1e-8 * trace<dim>(problem.stiffness.diagonal_block(node)) *
+      std::sqrt(dot<dim>(u_p, u_p));
+  }
+
+
+
+  template class PeakPressure<2>;
+  template class PeakPressure<3>;
+} // namespace Friction
