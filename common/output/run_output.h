@@ -53,7 +53,8 @@ namespace Friction
     void check_start(const Discretization<dim> &discretization);
 
     /** The same for the last solution, see warnings_at_end(), whose quantities
-     * it prints with their errors, see set_errors(). Throws InputError if its displacements are a thousand times larger than the body. */
+     * it prints with their errors, see set_errors(). Throws InputError if its
+     * displacements are a thousand times larger than the body. */
     void check_end(const Discretization<dim> &discretization,
                    const VectorType          &displacement,
                    const ContactState        &state);
