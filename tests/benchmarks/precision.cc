@@ -397,7 +397,7 @@ namespace Benchmark
       const auto                 error = [&](const VectorType &v) {
         return compute_exact_error(d.mapping(),
                                    d.dof_handler(),
-                                   nest.scene().materials().base(),
+                                   nest.scene().materials(),
                                    *nest.scene().exact_displacement(),
                                    v)
           .energy;
