@@ -79,7 +79,7 @@ namespace
 
     check_below(std::abs(compute_exact_error(d.mapping(),
                                              d.dof_handler(),
-                                             material,
+                                             iteration.scene().materials(),
                                              exact,
                                              iteration.displacement())
                              .energy /
