@@ -103,7 +103,7 @@ namespace
     parameters.contact.normal   = ContactNormal::obstacle;
     parameters.obstacle.kind    = ObstacleKind::rods;
     parameters.obstacle.centers = {{.3, -2.5}};
-    parameters.obstacle.radius  = 1.;
+    parameters.obstacle.radii   = {1.};
     const RandomProblem<2> other(parameters, 2, .5, random);
     normals = gaps = 0;
     for (const ContactNode<2> &p : other.contact())

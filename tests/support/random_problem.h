@@ -80,7 +80,7 @@ namespace Tests
         p.obstacle.kind    = ObstacleKind::rods;
         p.obstacle.centers = {{.75, .5, -3.}};
         p.obstacle.axes    = {{1., 2., 0.}};
-        p.obstacle.radius  = 3.;
+        p.obstacle.radii   = {3.};
         p.contact.normal   = ContactNormal::obstacle;
         displacement       = {{"5", {"0.03", "0.02", "-0.06"}}};
       }
