@@ -91,7 +91,7 @@ namespace Friction
 
     /**
      * @param directory        where the files go.
-     * @param material         from which stresses follow.
+     * @param materials        from which stresses follow.
      * @param contact_boundary boundary id of $\Gamma_S$.
      * @param format           of the files of the body.
      */
