@@ -52,13 +52,13 @@ namespace Friction
   PeakPressure<dim>::stress_inside(const unsigned int node) const
   {
     const NodeBlockMatrix<dim> &A   = problem.stiffness.blocks();
+    const double               *all = u.begin(), *own = all + dim * node;
     double                      sum = 0;
     for (std::size_t e = A.row_begin(node) + 1; e < A.row_end(node); ++e)
       {
         NodeValue<dim> difference;
         for (unsigned int d = 0; d < dim; ++d)
-          difference[d] = u.local_element(dim * A.column(e) + d) -
-            u.local_element(dim * node + d);
+          difference[d] = all[dim * A.column(e) + d] - own[d];
         const NodeValue<dim> force = times<dim>(A.block(e), difference.data());
         sum += std::sqrt(dot<dim>(force.data(), force.data()));
       }
