@@ -45,7 +45,7 @@ CASES = [
     ("error that is shown", "", FAILING, ["...", "No convergence on level 0 within "
      "1 cycle. Certificate: equilibrium 1.00e-16, penetration 0.00e+00, tension "
      "1.00e-16, complementarity 1.00e-16, friction cone 1.00e-16, slip direction "
-     "1.00e-16."], None),
+     "1.00e-16, state of a node 1.00e-16."], None),
     ("error that is not shown", "", FAILING,
      [HEAD, ROWS[0].replace("   2  0.000", "   1  0.000"), "..."],
      "the command ends with"),
