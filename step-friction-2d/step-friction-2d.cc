@@ -130,7 +130,7 @@ namespace StepFriction2d
     , triangulation(make_triangulation<dim>(MPI_COMM_WORLD))
     , discretization(scene, *triangulation)
     , state(0, false)
-    , stop(parameters.solver)
+    , stop(parameters.solver, scene.materials())
     , output(parameters, scene, std::cout, version(), MPI_COMM_WORLD)
   {}
 
@@ -203,7 +203,7 @@ namespace StepFriction2d
   // divergence of the former, which is that of the gradient, $\theta_a=g_a$.
   // Only if a scene says <code>Material/Volumetric strain = mean</code>,
   // because its material is nearly incompressible, $\theta_a$ is the mean of
-  // the gradient over the cell, to which Lam&eacute;'s constants belong as well.
+  // the gradient over the cell. Lam&eacute;'s constants belong to the cell, too.
   // Blocks above the diagonal follow from those below.
   //
   // The loop over cells, loads and hanging nodes do what those of step-40 do,
@@ -405,9 +405,8 @@ namespace StepFriction2d
   // <code>make_level_records()</code> turns nodal forces into pressures, sums
   // of forces and half-widths of zones, and keeps of each cycle its increment,
   // its energy, its step length and the number of components that truncation
-  // has taken from coarse functions. The results say how to read them. How far
-  // pressure, half-widths and forces are from those of a perfect mesh is
-  // estimated from the last few levels, and printed when the run ends.
+  // has taken from coarse functions. The results say how to read them. From the
+  // last levels it estimates the errors of pressure, half-widths and forces.
   //
   // The history is rewritten as a whole after each level and put in place by
   // renaming. A run that is killed leaves all levels that were complete.

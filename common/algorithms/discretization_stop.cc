@@ -7,21 +7,31 @@ namespace Friction
 {
   namespace
   {
-    // What the residual estimator is, in multiples of the error.
-    constexpr double overestimation = 8.;
-
     // The share of the iteration in the error.
     constexpr double share = .1;
 
     // How much better than expected a mesh may be.
     constexpr double caution = .5;
+
+    // What the residual estimator may be, in multiples of the error.
+    template <int dim>
+    double
+    largest_overestimation(const Materials<dim> &materials)
+    {
+      double largest = 0;
+      for (const Material &material : materials.of_regions())
+        largest = std::max(largest, material.lambda() / (2. * material.mu()));
+      return 7. * std::sqrt(1. + largest);
+    }
   } // namespace
 
 
 
   template <int dim>
-  DiscretizationStop<dim>::DiscretizationStop(const SolverSettings &settings)
+  DiscretizationStop<dim>::DiscretizationStop(const SolverSettings &settings,
+                                              const Materials<dim> &materials)
     : settings(settings)
+    , overestimation(largest_overestimation(materials))
   {}
 
 

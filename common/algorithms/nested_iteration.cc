@@ -18,7 +18,7 @@ namespace Friction
     , bilinear_form(form ? form : elasticity<dim>(the_scene.materials()))
     , triangulation(make_triangulation<dim>(communicator))
     , the_discretization(the_scene, *triangulation)
-    , stop(the_parameters.solver)
+    , stop(the_parameters.solver, the_scene.materials())
     , contact_state(0, false)
   {}
 
