@@ -133,9 +133,12 @@ namespace Friction
    * estimate does not depend on the units of the scene. With it rather than
    * $1/(\lambda+2\mu)$ the bound from above holds uniformly in $\lambda$, since
    * $2\mu\|\varepsilon(v)\|^2\le a(v,v)$; the price is overestimation as
-   * $\nu\to\frac12$. The estimate is a bound up to a constant that depends on
-   * the shape of the cells only; on uniform meshes of squares and cubes the
-   * ratio to the true error is about 7 and 9 (see the tests).
+   * $\nu\to\frac12$, by up to $\sqrt{(\lambda+2\mu)/(2\mu)}$. For linear
+   * elasticity the estimate is a bound up to a constant that depends on
+   * the shape of the cells only, and for contact without friction the like is
+   * known; for Coulomb's law there is no such theorem, and the estimate is a
+   * guide to refinement. On uniform meshes of squares and cubes the
+   * ratio to the true error is about 7 and 9 for $\nu=0.3$ (see the tests).
    *
    * With VolumetricStrain::mean $\sigma_h$ has the mean $\theta_h$ of the
    * divergence over the cell in it. The sum then has one more term,
