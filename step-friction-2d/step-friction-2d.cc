@@ -203,8 +203,8 @@ namespace StepFriction2d
   // divergence of the former, which is that of the gradient, $\theta_a=g_a$.
   // Only if a scene says <code>Material/Volumetric strain = mean</code>,
   // because its material is nearly incompressible, $\theta_a$ is the mean of
-  // the gradient over the cell. Lam&eacute;'s constants belong to the cell, too.
-  // Blocks above the diagonal follow from those below.
+  // the gradient over the cell. Lam&eacute;'s constants belong to the cell,
+  // too. Blocks above the diagonal follow from those below.
   //
   // The loop over cells, loads and hanging nodes do what those of step-40 do,
   // by blocks and with one exception that has been mentioned: prescribed values
