@@ -21,7 +21,7 @@ namespace Friction
       double largest = 0;
       for (const Material &material : materials.of_regions())
         largest = std::max(largest, material.lambda() / (2. * material.mu()));
-      return 7. * std::sqrt(1. + largest);
+      return (dim == 2 ? 6. : 8.) * std::sqrt(1. + largest);
     }
   } // namespace
 

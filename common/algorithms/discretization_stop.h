@@ -17,11 +17,12 @@ namespace Friction
    * by the most that this may be larger. A residual is at most the error times
    * the norm of the stiffness, so that squared stresses divided by
    * $\lambda+2\mu$ are a bound from below up to a constant that depends on the
-   * shape of the cells; the estimator divides them by $2\mu$. With squares and
-   * cubes the constant is 7 (see ErrorEstimate and its tests), which makes
-   * $7\sqrt{(\lambda+2\mu)/(2\mu)}$: 9.3 for a Poisson ratio of 0.3, and 350
-   * for 0.4999. With several materials it is the largest of theirs. Where the
-   * estimate is better than that, the iteration goes on a little longer.
+   * shape of the cells; the estimator divides them by $2\mu$. For squares the
+   * constant is 6, for cubes 8 (see the tests of the estimator), and the most
+   * it overestimates that times $\sqrt{(\lambda+2\mu)/(2\mu)}$: 7.9 for squares
+   * and a Poisson ratio of 0.3, and 300 for 0.4999. With several materials it
+   * is the largest of theirs. Where the estimate is better than that, the
+   * iteration goes on a little longer.
    *
    * It is not known before the mesh has been solved. So that of the mesh before
    * is taken, scaled by the rate at which errors fall with the number of
