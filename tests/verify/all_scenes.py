@@ -11,9 +11,8 @@ import tempfile
 from pathlib import Path
 
 from checks import verify_level
-from friction_verify import tolerance_of
-from run_data import Level, read_history
-from scene_text import SceneText
+from friction_verify import read_level, tolerance_of
+from run_data import read_history
 from verdict import COLUMNS
 
 
@@ -22,8 +21,7 @@ def row_of(name, directory):
     text, rows = read_history(directory)
     largest, confirmed = dict.fromkeys(COLUMNS, 0.), True
     for row in rows:
-        level = Level(directory / f"verify-{row['level']:02d}.h5")
-        scene = SceneText(text, level.dim)
+        level, scene = read_level(text, directory / f"verify-{row['level']:02d}.h5")
         verdict, unknown = verify_level(level, row, scene, tolerance_of(scene, row))
         confirmed = confirmed and not verdict.complaints and not unknown
         for column in COLUMNS:

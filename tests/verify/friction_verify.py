@@ -59,6 +59,16 @@ def tolerance_of(scene, row):
     return tolerance
 
 
+def read_level(text, path):
+    """What the run wrote of a level, and the scene in its dimension."""
+    level = Level(path)
+    scene = SceneText(text, level.dim)
+    if scene["Obstacle/Kind"] == "surface":
+        # Which is nothing but its expression.
+        level.obstacle = scene.obstacle(np.linalg.norm(np.ptp(level.vertices, axis=0)))
+    return level, scene
+
+
 def verify(directory, tolerance=None):
     """Prints the table; returns the exit status."""
     text, rows = read_history(directory)
@@ -73,14 +83,9 @@ def verify(directory, tolerance=None):
           + "  verdict")
     refuted, complaints, remarks = [], [], []
     for row, path in files:
-        level = Level(path)
+        level, scene = read_level(text, path)
         if level.level != row["level"]:
             raise NotReadable(f"'{path}' is that of another level.")
-        scene = SceneText(text, level.dim)
-        if scene["Obstacle/Kind"] == "surface":
-            # Which is nothing but its expression.
-            level.obstacle = scene.obstacle(
-                np.linalg.norm(np.ptp(level.vertices, axis=0)))
         verdict, unknown = verify_level(level, row, scene,
                                         tolerance or tolerance_of(scene, row))
         remarks += [entry for entry in unknown if entry not in remarks]
