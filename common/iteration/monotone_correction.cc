@@ -18,7 +18,7 @@ namespace Friction
   template <int dim>
   MonotoneCorrection<dim>::MonotoneCorrection(
     Levels<dim> &levels, const Cycle cycle, const unsigned int smoothing_steps)
-    : TruncatedCorrection<dim>(levels, cycle, smoothing_steps)
+    : TruncatedCorrection<dim>(levels, cycle, smoothing_steps, false)
   {
     for (unsigned int k = 0; k < levels.n_correction_levels(); ++k)
       {

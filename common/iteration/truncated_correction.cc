@@ -5,12 +5,25 @@ namespace Friction
 {
   template <int dim>
   TruncatedCorrection<dim>::TruncatedCorrection(
-    Levels<dim> &levels, const Cycle cycle, const unsigned int smoothing_steps)
+    Levels<dim>       &levels,
+    const Cycle        cycle,
+    const unsigned int smoothing_steps,
+    const bool         by_lines)
     : levels(levels)
-    , cycle_parameter(cycle == Cycle::V ? 1 : 2)
+    , relaxes_leaf(by_lines && levels.hierarchy().n_levels() > 1 &&
+                   levels.has_lines(levels.n_correction_levels()))
     , smoothing_steps(smoothing_steps)
   {
     const unsigned int n = levels.n_correction_levels();
+    for (unsigned int k = 0; k < n; ++k)
+      {
+        const bool is_worth_more = by_lines && levels.has_lines(k + 1) &&
+          3 * levels.n_dofs(k) <= levels.n_dofs(k + 1);
+        // The coarsest level is solved, so that once is enough.
+        n_visits.push_back(k > 0 && (cycle == Cycle::W || is_worth_more) ? 2
+                                                                         : 1);
+        is_v_cycle = is_v_cycle && n_visits[k] == 1;
+      }
     for (unsigned int k = 0; k < n; ++k)
       {
         rhs.push_back(levels.vector(k));
@@ -41,22 +54,36 @@ namespace Friction
     const LevelTransfer<dim> &transfer = levels.transfer();
 
     // If there is but one level, there is no cycle, but a direct solve.
-    const unsigned int finest = levels.hierarchy().n_levels() - 1;
-    const unsigned int top    = finest == 0 ? 0 : finest - 1;
-    leaf_residual             = &r;
+    const unsigned int finest      = levels.hierarchy().n_levels() - 1;
+    const unsigned int top         = finest == 0 ? 0 : finest - 1;
+    const unsigned int leaf_sweeps = (smoothing_steps + 1) / 2;
+    leaf_residual                  = &r;
+    v                              = 0.;
+    if (relaxes_leaf)
+      {
+        leaf_defect.reinit(r, true);
+        levels.relax_leaf(v, r, {leaf_sweeps, false}, &leaf_defect);
+        leaf_start    = v;
+        v             = 0.;
+        leaf_residual = &leaf_defect;
+      }
     for (VectorType &c : correction)
       c = 0.;
     restrict_residual(top);
-    for (unsigned int i = 0; i < (top == 0 ? 1 : cycle_parameter); ++i)
+    for (unsigned int i = 0; i < n_visits[top]; ++i)
       visit(top);
 
     // Each leaf node takes its correction from its finest level.
-    v = 0.;
     for (unsigned int k = 0; k <= top; ++k)
       transfer.copy_to_leaf(k, v, correction[k]);
     if (finest > 0)
       transfer.prolongate_to_leaf(v, correction[top]);
     levels.matrices().current_truncation().apply(v.begin());
+    if (relaxes_leaf)
+      {
+        add_owned(v, 1., leaf_start);
+        levels.relax_leaf(v, r, {leaf_sweeps, true});
+      }
   }
 
 
@@ -79,7 +106,7 @@ namespace Friction
     VectorType               &coarse   = correction[k - 1];
     VectorType               &before   = start[k];
     before                             = coarse;
-    if (cycle_parameter == 1)
+    if (is_v_cycle)
       relax(k, false, &defect[k]);
     else
       {
@@ -98,7 +125,7 @@ namespace Friction
       }
     restrict_residual(k - 1);
 
-    for (unsigned int i = 0; i < (k == 1 ? 1 : cycle_parameter); ++i)
+    for (unsigned int i = 0; i < n_visits[k - 1]; ++i)
       visit(k - 1);
 
     scale_owned(before, -1.);

@@ -25,6 +25,14 @@ namespace Friction
    * as V-cycles in the releases up to 9.7, relaxes the finest level like all
    * others, and its edge matrices are those of local smoothing without
    * truncation.
+   *
+   * Where cells are stretched, the leading relaxation and that of the levels
+   * have to deal with lines of strongly coupled nodes. On the levels they are
+   * relaxed together, see LineRelaxation, and so they are on the leaf mesh,
+   * before and after everything else, with half as many sweeps. Coarse
+   * levels are worth more then: a level that has at most a third of the nodes
+   * of the next finer one, and on that one lines, is visited twice also in a
+   * V-cycle.
    */
   template <int dim>
   class TruncatedCorrection : public Correction<dim>
@@ -33,7 +41,9 @@ namespace Friction
     /** @p levels is kept by reference. */
     TruncatedCorrection(Levels<dim>       &levels,
                         const Cycle        cycle,
-                        const unsigned int smoothing_steps);
+                        const unsigned int smoothing_steps)
+      : TruncatedCorrection(levels, cycle, smoothing_steps, true)
+    {}
 
     std::size_t update(const Linearization<dim> &linearization,
                        const Iterate            &x) override;
@@ -43,6 +53,12 @@ namespace Friction
     std::size_t memory_consumption() const override;
 
   protected:
+    /** @p by_lines: relaxes lines where there are some. */
+    TruncatedCorrection(Levels<dim>       &levels,
+                        const Cycle        cycle,
+                        const unsigned int smoothing_steps,
+                        const bool         by_lines);
+
     Levels<dim> &levels;
 
     // Per level: right hand side, correction, what the next coarser level had
@@ -64,9 +80,14 @@ namespace Friction
     virtual void solve_coarsest();
 
   private:
-    const unsigned int cycle_parameter;
-
     const VectorType *leaf_residual = nullptr;
+    VectorType        leaf_defect, leaf_start;
+
+    // How often a level is visited per visit of the next finer one.
+    std::vector<unsigned int> n_visits;
+    bool                      is_v_cycle = true;
+
+    const bool relaxes_leaf;
 
     void visit(const unsigned int level);
 

@@ -7,6 +7,7 @@
 #include <common/levels/level_matrices.h>
 #include <common/levels/level_transfer.h>
 #include <common/nodes/gauss_seidel.h>
+#include <common/nodes/line_relaxation.h>
 #include <common/parallel/ghost_exchange.h>
 #include <common/parallel/run_clock.h>
 
@@ -22,7 +23,8 @@ namespace Friction
    *   mesh;
    * - LevelTransfer: residuals down, corrections up;
    * - LevelMatrices: the Galerkin matrices, which follow the truncation;
-   * - relaxation, and the solver of the coarsest level.
+   * - relaxation, and the solver of the coarsest level;
+   * - lines of strongly coupled nodes, if there are any.
    *
    * A correction adds vectors to this, and the order in which levels are
    * visited.
@@ -101,7 +103,8 @@ namespace Friction
 
     /**
      * Gauss-Seidel sweeps for B_k c = b at the nodes of a level that are to be
-     * relaxed. The ghosts of @p c must be valid, and are on return.
+     * relaxed, by nodes or, where cells are stretched, by lines. The ghosts of
+     * @p c must be valid, and are on return.
      * @param defect  if not null, b - B_k c on return.
      */
     void relax(const unsigned int k,
@@ -109,6 +112,40 @@ namespace Friction
                const VectorType  &b,
                const Sweeps      &sweeps,
                VectorType        *defect = nullptr);
+
+    /** Whether cells of a correction level, or with n_correction_levels() in
+     * place of a level those of the leaf mesh, are stretched so much that there
+     * are lines of strongly coupled nodes. relax() then relaxes lines; on the
+     * leaf mesh, where the leading relaxation goes node by node, a correction
+     * has to. */
+    bool
+    has_lines(const unsigned int k) const
+    {
+      return k < n_correction_levels() ? lines[k].has_lines()
+                                       : leaf_lines.has_lines();
+    }
+
+    /** The number of unknowns of a correction level, or likewise of the leaf
+     * mesh, on all processes. */
+    types::global_dof_index
+    n_dofs(const unsigned int k) const
+    {
+      return k < n_correction_levels()
+        ? level_hierarchy.level(k).partitioner()->size()
+        : problem.constraints.partitioner()->size();
+    }
+
+    /**
+     * Sweeps over the lines of the leaf mesh for $T(A+\omega'')T\,v=r$.
+     * @param v       truncated. Its ghosts need not be valid, and are on
+     *                return.
+     * @param r       truncated.
+     * @param defect  if not null, the truncated residual on return.
+     */
+    void relax_leaf(VectorType       &v,
+                    const VectorType &r,
+                    const Sweeps     &sweeps,
+                    VectorType       *defect = nullptr);
 
     std::size_t memory_consumption() const;
 
@@ -125,7 +162,14 @@ namespace Friction
     LevelMatrices<dim>            level_matrices;
     CoarsestSolver<dim>           coarsest;
     std::vector<GaussSeidel<dim>> relaxations;
-    std::vector<GhostExchange>    coupled;
+
+    // Where cells are stretched.
+    std::vector<LineRelaxation<dim>> lines;
+    LineRelaxation<dim>              leaf_lines;
+    bool                             have_lines           = false;
+    bool                             lines_are_factorised = false;
+
+    std::vector<GhostExchange> coupled;
   };
 } // namespace Friction
 
