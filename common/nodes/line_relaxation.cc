@@ -15,8 +15,9 @@ namespace Friction
   {
     constexpr unsigned int none = numbers::invalid_unsigned_int;
 
-    // A coupling is strong if it is so many times the third strongest.
-    constexpr double anisotropy = 3.;
+    // The two strongest couplings of a node that belongs to a line, in parts of
+    // its diagonal.
+    constexpr double anisotropy = .8;
 
     constexpr unsigned int shortest_line = 3;
 
@@ -33,26 +34,46 @@ namespace Friction
                     const unsigned int          row,
                     const std::vector<char>    &is_relaxed)
     {
-      // The three strongest, in descending order.
-      std::array<double, 3>       strengths{};
-      std::array<unsigned int, 3> columns{{none, none, none}};
+      double   strengths[2] = {};
+      Partners partners{{none, none}};
       for (std::size_t k = A.row_begin(row) + 1; k < A.row_end(row); ++k)
         {
           double       strength = -trace<dim>(A.block(k));
           unsigned int column   = A.column(k);
-          for (unsigned int i = 0; i < 3; ++i)
+          for (unsigned int i = 0; i < 2; ++i)
             if (strength > strengths[i])
               {
                 std::swap(strength, strengths[i]);
-                std::swap(column, columns[i]);
+                std::swap(column, partners[i]);
               }
         }
-      Partners partners{{none, none}};
-      for (unsigned int i = 0; i < 2; ++i)
-        if (columns[i] != none && strengths[i] >= anisotropy * strengths[2] &&
-            columns[i] < A.n_rows() && is_relaxed[columns[i]])
-          partners[i] = columns[i];
+      const double diagonal = trace<dim>(A.block(A.row_begin(row)));
+      if (strengths[0] + strengths[1] < anisotropy * diagonal || diagonal <= 0.)
+        return Partners{{none, none}};
+      for (unsigned int &partner : partners)
+        if (partner != none && (partner >= A.n_rows() || !is_relaxed[partner]))
+          partner = none;
       return partners;
+    }
+
+
+
+    // See interface_damping(). The matrix of a line has eigenvalues that are
+    // much smaller than those of its diagonal blocks, so that nothing of these
+    // can be set off against the couplings to other processes: the damping is
+    // half of the majorant.
+    template <int dim>
+    NodeBlock<dim>
+    damping_of(const NodeBlockMatrix<dim> &A,
+               const unsigned int          row,
+               const bool                  is_alone)
+    {
+      if (is_alone)
+        return interface_damping(A, row);
+      NodeBlock<dim> damping = interface_majorant(A, row);
+      for (double &entry : damping)
+        entry *= .5;
+      return damping;
     }
   } // namespace
 
@@ -200,9 +221,10 @@ namespace Friction
     for (unsigned int l = 0; l + 1 < starts.size(); ++l)
       for (unsigned int k = starts[l]; k < starts[l + 1]; ++k)
         {
-          const unsigned int   i       = nodes[k];
-          NodeBlock<dim>       pivot   = block(i, A->row_begin(i));
-          const NodeBlock<dim> damping = interface_damping(*A, i);
+          const bool           is_alone = starts[l] + 1 == starts[l + 1];
+          const unsigned int   i        = nodes[k];
+          NodeBlock<dim>       pivot    = block(i, A->row_begin(i));
+          const NodeBlock<dim> damping  = damping_of(*A, i, is_alone);
           for (unsigned int e = 0; e < dim * dim; ++e)
             pivot[e] += damping[e];
           if (truncation != nullptr && !truncation->is_identity(i))

@@ -24,17 +24,16 @@ namespace Friction
    *
    * Lines are found from the matrix. With the negative traces of blocks as
    * strengths, which are the weights of Laplace's operator for a material that
-   * is the same everywhere, a node is in a line if at most two of its
-   * couplings are at least three times as strong as the third strongest; lines
-   * connect nodes of which each is such a partner of the other, and those of
-   * less than three nodes are dropped. On
-   * meshes of squares or cubes there are none. The bilinear elements of cells
-   * that are infinitely long reach a ratio of four, with an aspect ratio of
-   * three it is 3.3.
+   * is the same everywhere, a node may be in a line if its two strongest
+   * couplings have four fifths of its diagonal together. With squares they have
+   * a quarter, with rectangles 4/5 from an aspect ratio of 2.7 on, and all of
+   * it if cells are infinitely long. Lines connect nodes of which each is one
+   * of the two strongest partners of the other, and those of less than three
+   * nodes are dropped.
    *
-   * With several processes, lines end at the interfaces, and nodes there get
-   * the damping of relaxation by nodes (interface_damping()); the argument for
-   * it holds for any blocks within a process.
+   * With several processes, lines end at the interfaces, and their nodes there
+   * get half of interface_majorant() as damping, with which the energy falls.
+   * An interface that cuts lines costs cycles, many if it cuts all of them.
    */
   template <int dim>
   class LineRelaxation

@@ -1,0 +1,228 @@
+// Relaxation by lines, on the matrix of a block whose cells are ten times as
+// long as wide, with a truncation picked at random:
+//
+// - on squares and cubes there are no lines; on stretched cells each line is a
+//   column of vertices in the short direction, and they cover the mesh;
+// - the sweep over a single line solves its problem: afterwards its residual
+//   vanishes;
+// - values and residual stay truncated, and the residual is that of
+//   $T(A+\omega'')T$;
+// - each sweep lowers the energy, on several processes as well;
+// - a sweep forwards and one backwards are a symmetric operator.
+
+#include <common/nodes/line_relaxation.h>
+
+#include <deal.II/grid/grid_generator.h>
+
+#include <iostream>
+#include <set>
+
+#include <tests/support/check.h>
+#include <tests/support/discretized.h>
+#include <tests/support/random.h>
+#include <tests/support/random_problem.h>
+
+using namespace Tests;
+
+namespace
+{
+  template <int dim>
+  Parameters
+  stretched_block(const unsigned int stretched_direction)
+  {
+    Parameters p       = block_parameters<dim>(FrictionLaw::none, 0.);
+    p.scene.distortion = 0.;
+    p.scene.size.assign(dim, 1.);
+    p.scene.subdivisions.assign(dim, 2);
+    if (stretched_direction < dim)
+      p.scene.subdivisions[stretched_direction] = 20;
+    return p;
+  }
+
+
+
+  template <int dim>
+  NodeRanges
+  movable_nodes(const Discretization<dim> &d)
+  {
+    NodeRanges nodes;
+    for (unsigned int i = 0; i < d.constraints().n_owned_nodes(); ++i)
+      if (!d.constraints().is_fixed(i))
+        append(nodes, i);
+    return nodes;
+  }
+
+
+
+  // Sticking and sliding nodes anywhere, some with a second derivative.
+  template <int dim>
+  Truncation<dim>
+  random_truncation(const Discretization<dim> &d, Random &random)
+  {
+    Truncation<dim> truncation(d.constraints());
+    for (unsigned int i = 0; i < d.constraints().n_owned_nodes(); ++i)
+      if (d.constraints().is_free(i) && random.chance(.1))
+        {
+          NodeBlock<dim> projector = identity_block<dim>(),
+                         curvature = zero_block<dim>();
+          projector[0]             = 0.;
+          if (random.chance(.5))
+            projector = zero_block<dim>();
+          else
+            curvature[dim * dim - 1] = 3.;
+          truncation.set(i, projector, curvature);
+        }
+    return truncation;
+  }
+
+
+
+  template <int dim>
+  void
+  test(const unsigned int direction)
+  {
+    const Scene<dim> scene(stretched_block<dim>(direction));
+    const auto       mesh = make_triangulation<dim>();
+    scene.make_coarse_mesh(*mesh);
+    mesh->refine_global(1);
+    Discretized<dim>            d(scene, *mesh);
+    const NodeBlockMatrix<dim> &A = d.stiffness().blocks();
+    LineRelaxation<dim>         relaxation(A, movable_nodes(d), MPI_COMM_WORLD);
+    const bool                  is_stretched = direction < dim;
+    check_everywhere(relaxation.has_lines() == is_stretched,
+                     is_stretched ? "there are lines" : "there are none");
+    if (!is_stretched)
+      return;
+
+    const auto             points   = node_points(d);
+    bool                   straight = true;
+    std::set<unsigned int> covered;
+    for (const std::vector<unsigned int> &line : relaxation.lines())
+      for (unsigned int k = 0; k < line.size(); ++k)
+        {
+          covered.insert(line[k]);
+          Tensor<1, dim> step = points[line[k]] - points[line[0]];
+          step[direction]     = 0.;
+          straight            = straight && step.norm() < 1e-12;
+        }
+    check_everywhere(straight, "they go in the short direction");
+    const auto n_covered =
+      Utilities::MPI::sum((unsigned int)covered.size(), MPI_COMM_WORLD);
+    unsigned int n_movable = 0;
+    for (const RowRange &range : movable_nodes(d))
+      n_movable += range.second - range.first;
+    n_movable = Utilities::MPI::sum(n_movable, MPI_COMM_WORLD);
+    check_everywhere(n_covered > .7 * n_movable, "and cover the mesh");
+
+    Random                random(3);
+    const Truncation<dim> truncation = random_truncation(d, random);
+    relaxation.factorise(&truncation);
+    const auto random_vector = [&]() {
+      VectorType v = d.vector();
+      for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
+        v.local_element(i) =
+          d.constraints().is_fixed(i / dim) ? 0. : random(-1., 1.);
+      truncation.apply(v.begin());
+      return v;
+    };
+    // What the matrix is: T (A + w) x for truncated x.
+    const auto apply = [&](const VectorType &x) {
+      VectorType y = d.vector();
+      d.stiffness().update_ghosts(x);
+      A.vmult(y.begin(), x.begin());
+      for (unsigned int i = 0; i < A.n_rows(); ++i)
+        {
+          const NodeValue<dim> more =
+            times<dim>(truncation.curvature(i).data(), x.begin() + dim * i);
+          for (unsigned int c = 0; c < dim; ++c)
+            y.local_element(dim * i + c) += more[c];
+        }
+      truncation.apply(y.begin());
+      return y;
+    };
+    const VectorType b      = random_vector();
+    const auto       energy = [&](const VectorType &x) {
+      return .5 * (x * apply(x)) - b * x;
+    };
+    GhostExchange &ghosts = d.stiffness().ghosts();
+
+    VectorType x = random_vector(), residual = d.vector();
+    double     last  = energy(x);
+    bool       falls = true, residual_is_right = true, stays = true;
+    for (unsigned int sweep = 0; sweep < 6; ++sweep)
+      {
+        d.stiffness().update_ghosts(x);
+        relaxation.run(
+          {1, sweep % 2 == 1}, b.begin(), x.begin(), ghosts, residual.begin());
+        const double now      = energy(x);
+        falls                 = falls && now < last;
+        last                  = now;
+        VectorType difference = apply(x);
+        difference -= b;
+        // Rows that are not relaxed have residuals, too.
+        difference += residual;
+        for (unsigned int i = 0; i < A.n_rows(); ++i)
+          if (d.constraints().is_fixed(i))
+            for (unsigned int c = 0; c < dim; ++c)
+              difference.local_element(dim * i + c) = 0.;
+        residual_is_right =
+          residual_is_right && difference.linfty_norm() < 1e-12;
+        difference = x;
+        truncation.apply(difference.begin());
+        difference -= x;
+        stays = stays && difference.linfty_norm() < 1e-14;
+      }
+    check_everywhere(falls, "each sweep lowers the energy");
+    check_everywhere(residual_is_right, "the residual is the truncated one");
+    check_everywhere(stays, "values stay truncated");
+
+    // The line that a sweep backwards comes to last has no neighbours that
+    // change after it; on one process.
+    if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1)
+      {
+        const std::vector<unsigned int> first = relaxation.lines().front();
+        double                          left  = 0;
+        for (const unsigned int node : first)
+          for (unsigned int c = 0; c < dim; ++c)
+            left =
+              std::max(left, std::abs(residual.local_element(dim * node + c)));
+        check_below(left / residual.linfty_norm(),
+                    1e-10,
+                    "what is left on the line relaxed last");
+      }
+
+    const auto forwards_and_backwards = [&](const VectorType &rhs) {
+      VectorType v = d.vector();
+      relaxation.run({2, false}, rhs.begin(), v.begin(), ghosts);
+      relaxation.run({2, true}, rhs.begin(), v.begin(), ghosts);
+      return v;
+    };
+    const VectorType c   = random_vector();
+    const double     one = c * forwards_and_backwards(b),
+                 other   = b * forwards_and_backwards(c);
+    check_everywhere(std::abs(one - other) < 1e-10 * std::abs(one),
+                     "forwards and backwards is symmetric");
+  }
+} // namespace
+
+
+
+int
+main(int argc, char **argv)
+{
+  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const auto name = [](const unsigned int dim, const std::string &what) {
+    if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+      std::cout << dim << "D, " << what << std::endl;
+  };
+  name(2, "squares");
+  test<2>(2);
+  name(2, "short in x");
+  test<2>(0);
+  name(2, "short in y");
+  test<2>(1);
+  name(3, "cubes");
+  test<3>(3);
+  name(3, "short in z");
+  test<3>(2);
+}
