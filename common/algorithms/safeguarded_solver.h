@@ -17,8 +17,8 @@ namespace Friction
    * 1. the algorithm of the settings, by default Algorithm 3;
    * 2. the same algorithm with shorter steps, if phases were still changing;
    *    otherwise, or if that fails, with AlgebraicCorrection: if the coarse
-   *    levels were the trouble, for example because cells are a thousand times
-   *    longer than wide;
+   *    levels were the trouble, for example because cells are short in two of
+   *    three directions;
    * 3. Algorithm 2 with half of each change of the normal forces, and with
    *    mixing, see MixedFixedPoint: if Coulomb's law was the trouble, because
    *    there is much friction. Each of its problems, with given normal forces,
