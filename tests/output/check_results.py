@@ -11,7 +11,7 @@ import sys
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "doc" / "figures"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "common" / "plot"))
 try:
     import h5py
     import numpy as np
