@@ -13,12 +13,6 @@ def tractions(nodes):
     return pressure, traction + pressure[:, None] * normal
 
 
-def bound(nodes):
-    """The largest tangential stress that friction allows, or None if the run has not
-    written it."""
-    return nodes.get("friction_bound")
-
-
 def chains(points, measure):
     """Contact nodes of the plane in the order in which the boundary runs through them:
     a list of arrays of indices, one per connected piece of it. Neighbours are not

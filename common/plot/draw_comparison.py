@@ -41,9 +41,7 @@ def names_of(runs):
 
 def draw_comparison(runs):
     """A figure."""
-    in_plane = all(nodes["point"].shape[1] == 2
-                   for run in runs for nodes in run.contact.values())
-    stresses = in_plane and all(run.last in run.contact for run in runs)
+    stresses = all(run.dim == 2 and run.last in run.contact for run in runs)
     names = names_of(runs)
     columns = 1 if max(map(len, names)) > 45 else 2
     heights = [7.8 if stresses else 5.2, 0.22 * -(-len(runs) // columns) + 0.15]

@@ -37,8 +37,7 @@ def draw_run(run, choice):
         raise Failure(f"the run in '{run.directory}' has written no fields of level "
                       f"{level}; do without the panel 'body', or set "
                       "'Output/Fields = true'.")
-    in_space = (nodes["point"].shape[1] == 3 if nodes is not None
-                else mesh is not None and mesh.cells.shape[1] == 8)
+    in_space = run.dim == 3
     faces = (read_fields(run.directory, "contact", level)
              if in_space and "contact" in choice.panels else None)
 
@@ -306,7 +305,8 @@ def draw_line(part, run, nodes):
 
     pressure, tangential = boundary.tractions(nodes)
     along = np.sum(tangential * line.tangent, axis=1)
-    bound = boundary.bound(nodes)
+    bound = nodes["friction_bound"]
+    with_friction = bound.max() > 0
     axes = part.subplots()
     axes.axhline(0, color="0.8", linewidth=0.8)
     for i, piece in enumerate(line.pieces):
@@ -317,7 +317,7 @@ def draw_line(part, run, nodes):
                   label="pressure" if first else None)
         axes.plot(s, along[piece], color=RED, marker=marker,
                   label="tangential stress" if first else None)
-        if bound is not None:
+        if with_friction:
             for sign in (1, -1):
                 axes.plot(s, sign * bound[piece], color="k", linestyle="--",
                           linewidth=0.9, label="what friction allows"

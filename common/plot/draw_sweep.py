@@ -26,10 +26,10 @@ def quantity(row, name):
 
 
 def title_of(example, name):
-    text = name.replace("_", " ")
     if "/" in name:
-        return text
-    return example.axis(text, "levels/" + name.strip().replace(" ", "_"))
+        return name.replace("_", " ")
+    column = "levels/" + name.strip().replace(" ", "_")
+    return example.axis(example.label(column), column)
 
 
 def numbers(values):

@@ -102,15 +102,13 @@ def read_fields(directory, what, level):
 
 
 def field_names(mesh):
-    """What read_field() knows by name."""
+    """What select_field() knows by name."""
     names = []
     for name, values in {**mesh.of_points, **mesh.of_cells}.items():
         if values.ndim == 1:
             names.append(name)
         elif values.shape[1] == 6:
             names += [f"{name}_{component.lower()}" for component in STRESSES]
-        elif name.startswith("principal"):
-            names += [f"{name}_{i}" for i in (1, 2, 3)]
         else:
             names += [name] + [f"{name}_{component}" for component in "xyz"]
     return names
@@ -130,8 +128,6 @@ def select_field(mesh, name):
             values = np.linalg.norm(fields[name], axis=1)
         elif base in fields and component.upper() in STRESSES:
             values = fields[base][:, STRESSES.index(component.upper())]
-        elif base in fields and component in ("1", "2", "3"):
-            values = fields[base][:, int(component) - 1]
         elif base in fields:
             values = fields[base][:, "xyz".index(component)]
         else:

@@ -29,8 +29,8 @@ def text_of(attribute):
 class Run:
     """The history of a run: one value per level in `levels`, one per cycle in
     `cycles`, one per outer iteration in `outer` (Algorithm 2; or None), one per
-    contact node in `contact`, by level. `entries` are the parameters, by
-    'Section/Entry'. Raises Failure."""
+    contact node in `contact`, by level. `dim` is the dimension, `entries` are the
+    parameters, by 'Section/Entry'. Raises Failure."""
 
     def __init__(self, directory):
         self.directory = Path(directory)
@@ -53,6 +53,7 @@ class Run:
         self.scene = text_of(file.attrs["scene"])
         self.version = text_of(file.attrs["version"])
         self.entries = entries_of(text_of(file.attrs["parameters"]))
+        self.dim = int(file.attrs["dimension"])
         self.levels = self._columns(file["levels"])
         self.cycles = (self._columns(file["cycles"]) if "cycles" in file
                        else {name: self.levels["level"][:0] for name in
@@ -63,6 +64,8 @@ class Run:
         self.last = int(self.levels["level"][-1])
 
     def _columns(self, group):
+        """The datasets of a group; their labels and units are kept by its first name
+        and theirs."""
         for name, data in group.items():
             path = f"{group.name.split('/')[1]}/{name}"
             if "units" in data.attrs:
@@ -74,15 +77,11 @@ class Run:
     def unit(self, column):
         """Of a column such as 'levels/energy' or 'contact/gap': what the scene calls
         it, or nothing."""
-        return self._units.get(column, "") if self.names_units else ""
+        return self._units.get(column, "")
 
     def label(self, column):
         """What a column is, in a few words."""
         return self._labels.get(column, column.split("/")[1].replace("_", " "))
-
-    @property
-    def names_units(self):
-        return self.entries.get("Output/Units", "") != ""
 
     def axis(self, text, column):
         """The name of an axis, with the unit of a column if it has one."""

@@ -6,6 +6,7 @@ import itertools
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
 import threading
@@ -110,13 +111,16 @@ class Sweep:
         with self._lock:
             self._processes.discard(process)
         # Who was stopped, by us or by the system, has given no answer.
-        if status < 0 or status > 128 or self._stopped.is_set():
-            if self._stopped.is_set():
-                return None
+        if self._stopped.is_set():
+            return None
+        if status < 0 or status > 128:
             return {"status": status, "message": f"ended by signal {abs(status) % 128}"}
         record = {"status": status, "message": ""}
         if status != 0:
             record["message"] = last_words(directory / "console.txt", status)
+        # Left by a friction-plot that was killed, it may be at work still.
+        if record["message"].startswith("Another run is writing"):
+            return record
         write_then_rename(directory / RECORD, json.dumps(
             {"question": self.question(point), **record}, indent=1))
         return record
@@ -226,6 +230,7 @@ def sweep(options):
     from draw_sweep import draw_sweep, quantity
     from write_picture import check_ending, write_picture
 
+    signal.signal(signal.SIGTERM, lambda *_: signal.raise_signal(signal.SIGINT))
     runs = Sweep(options)
     shown = options.show or ["max_pressure"]
     output = check_ending(options.output) if options.output else None

@@ -1,5 +1,7 @@
 // The history of a run: what is written comes back unchanged, with the names
-// and shapes scripts rely on, and each level replaces the file as a whole.
+// and shapes scripts rely on, and each level replaces the file as a whole. Each
+// number says what it is and which unit it has, in two dimensions and in three;
+// the table of levels is there as text, too.
 
 #include <common/output/history.h>
 #include <common/output/run_directory.h>
@@ -8,9 +10,57 @@
 #include <deal.II/base/mpi.h>
 
 #include <filesystem>
+#include <fstream>
 #include <iostream>
+#include <set>
+#include <sstream>
 
 using namespace Friction;
+
+namespace
+{
+  // What is the unit of each kind of number?
+  template <int dim>
+  void
+  print_units(const Parameters::UnitNames &units)
+  {
+    const RunDirectory directory("history-test/units");
+    History<dim>       history(directory.file("history.h5"),
+                         {"scene", "", "0", units});
+    ContactRecord<dim> node;
+    history.add_level(LevelRecord(),
+                      std::vector<CycleRecord>(1),
+                      std::vector<ContactRecord<dim>>(1, node));
+    const dealii::HDF5::File file(directory.file("history.h5"),
+                                  dealii::HDF5::File::FileAccessMode::open);
+    std::cout << dim << "D, length '" << units.length << "', force '"
+              << units.force << "'" << std::endl;
+    for (const std::string name : {"levels/energy",
+                                   "levels/estimated_error",
+                                   "levels/normal_force",
+                                   "levels/max_pressure",
+                                   "levels/stick_half_width",
+                                   "levels/solve_seconds",
+                                   "cycles/residual",
+                                   "contact/level_00/measure",
+                                   "contact/level_00/force",
+                                   "contact/level_00/slip",
+                                   "contact/level_00/friction_bound"})
+      {
+        const auto  data = file.open_dataset(name);
+        std::string unit = "none";
+        try
+          {
+            unit = data.template get_attribute<std::string>("units");
+          }
+        catch (const std::exception &)
+          {}
+        std::cout << "  " << name << ", "
+                  << data.template get_attribute<std::string>("label") << ": "
+                  << unit << std::endl;
+      }
+  }
+} // namespace
 
 int
 main(int argc, char **argv)
@@ -19,7 +69,8 @@ main(int argc, char **argv)
 
   const RunDirectory directory("history-test/nested/directory");
   History<2>         history(
-    directory.file("history.h5"), "hertz", "subsection Scene\nend\n", "0.1.0");
+    directory.file("history.h5"),
+    {"hertz", "subsection Scene\nend\n", "0.1.0", {"mm", "N"}});
 
   for (unsigned int l = 0; l < 3; ++l)
     {
@@ -41,18 +92,23 @@ main(int argc, char **argv)
       std::vector<ContactRecord<2>> contact(2 * l);
       for (unsigned int i = 0; i < contact.size(); ++i)
         {
-          contact[i].point  = dealii::Point<2>(i, -1.);
-          contact[i].force  = dealii::Tensor<1, 2>({0.5, 2. * i});
-          contact[i].gap    = 0.125 * i;
-          contact[i].state  = i % 3;
-          contact[i].normal = dealii::Tensor<1, 2>({0., -1.});
+          contact[i].point          = dealii::Point<2>(i, -1.);
+          contact[i].force          = dealii::Tensor<1, 2>({0.5, 2. * i});
+          contact[i].gap            = 0.125 * i;
+          contact[i].state          = i % 3;
+          contact[i].normal         = dealii::Tensor<1, 2>({0., -1.});
+          contact[i].displacement   = dealii::Tensor<1, 2>({0.5, 0.25});
+          contact[i].friction_bound = 0.75;
         }
       history.add_level(level, cycles, contact);
     }
 
+  std::set<std::string> names;
   for (const auto &entry :
        std::filesystem::directory_iterator(directory.path()))
-    std::cout << entry.path().filename().string() << std::endl;
+    names.insert(entry.path().filename().string());
+  for (const std::string &name : names)
+    std::cout << name << std::endl;
 
   const dealii::HDF5::File file(directory.file("history.h5"),
                                 dealii::HDF5::File::FileAccessMode::open);
@@ -94,7 +150,21 @@ main(int argc, char **argv)
   for (const char *name :
        {"level", "increment", "energy", "damping", "truncated", "residual"})
     print("cycles", name);
-  for (const char *name :
-       {"point", "normal", "gap", "force", "displacement", "measure", "state"})
+  for (const char *name : {"point",
+                           "normal",
+                           "gap",
+                           "force",
+                           "displacement",
+                           "slip",
+                           "measure",
+                           "friction_bound",
+                           "state"})
     print("contact/level_02", name);
+
+  std::cout << "levels.csv" << std::endl
+            << std::ifstream(directory.file("levels.csv")).rdbuf();
+
+  print_units<2>({"mm", "N"});
+  print_units<3>({"mm", "N"});
+  print_units<3>({"m", ""});
 }
