@@ -179,25 +179,21 @@ namespace Friction
 
 
 
-    void
-    write_values(const dealii::HDF5::Group       &group,
-                 const std::string               &name,
-                 const std::vector<unsigned int> &values)
-    {
-      group.write_dataset(name, values);
-    }
-
-    void
+    // One dataset with a number of each record.
+    template <typename Number>
+    std::enable_if_t<std::is_arithmetic_v<Number>, dealii::HDF5::DataSet>
     write_values(const dealii::HDF5::Group &group,
                  const std::string         &name,
-                 const std::vector<double> &values)
+                 const std::vector<Number> &values)
     {
-      group.write_dataset(name, values);
+      auto data = group.create_dataset<Number>(name, {values.size()});
+      data.write(values);
+      return data;
     }
 
-    // Vectors and points: one row each.
+    // The same with a vector or a point of each: one row each.
     template <typename VectorType>
-    void
+    std::enable_if_t<!std::is_arithmetic_v<VectorType>, dealii::HDF5::DataSet>
     write_values(const dealii::HDF5::Group     &group,
                  const std::string             &name,
                  const std::vector<VectorType> &values)
@@ -206,12 +202,15 @@ namespace Friction
       for (unsigned int i = 0; i < rows.m(); ++i)
         for (unsigned int c = 0; c < rows.n(); ++c)
           rows(i, c) = values[i][c];
-      group.write_dataset(name, rows);
+      auto data = group.create_dataset<double>(name, {rows.m(), rows.n()});
+      data.write(rows);
+      return data;
     }
 
 
 
-    // Writes a column of a table as a dataset that says what it is.
+    // Writes a column of a table as a dataset that says what it is, if there
+    // are names of units.
     template <typename Record>
     class ColumnWriter
     {
@@ -219,7 +218,7 @@ namespace Friction
       ColumnWriter(const dealii::HDF5::Group   &group,
                    const std::vector<Record>   &records,
                    const unsigned int           dim,
-                   const Parameters::UnitNames &units)
+                   const Parameters::UnitNames *units)
         : group(group)
         , records(records)
         , dim(dim)
@@ -238,11 +237,11 @@ namespace Friction
         values.reserve(records.size());
         for (const Record &record : records)
           values.push_back(std::invoke(member, record));
-        write_values(group, name, values);
-
-        dealii::HDF5::DataSet data = group.open_dataset(name);
+        dealii::HDF5::DataSet data = write_values(group, name, values);
+        if (units == nullptr)
+          return;
         data.set_attribute("label", label);
-        const std::string unit = unit_of(quantity, dim, units);
+        const std::string unit = unit_of(quantity, dim, *units);
         if (!unit.empty())
           data.set_attribute("units", unit);
       }
@@ -251,7 +250,7 @@ namespace Friction
       const dealii::HDF5::Group    group;
       const std::vector<Record>   &records;
       const unsigned int           dim;
-      const Parameters::UnitNames &units;
+      const Parameters::UnitNames *units;
     };
 
 
@@ -375,13 +374,13 @@ namespace Friction
     file.set_attribute("dimension", static_cast<unsigned int>(dim));
 
     for_each_level_column<dim>(ColumnWriter<LevelRecord>(
-      file.create_group("levels"), level_records, dim, description.units));
+      file.create_group("levels"), level_records, dim, &description.units));
     if (!cycle_records.empty())
       for_each_cycle_column(ColumnWriter<CycleRecord>(
-        file.create_group("cycles"), cycle_records, dim, description.units));
+        file.create_group("cycles"), cycle_records, dim, &description.units));
     if (!outer_records.empty())
       for_each_outer_column(ColumnWriter<OuterRecord>(
-        file.create_group("outer"), outer_records, dim, description.units));
+        file.create_group("outer"), outer_records, dim, &description.units));
 
     if (!contact_levels.empty())
       {
@@ -391,7 +390,7 @@ namespace Friction
             all_levels.create_group("level_" + two_digits(contact.level)),
             contact.nodes,
             dim,
-            description.units));
+            &contact == &contact_levels.back() ? &description.units : nullptr));
       }
   }
 

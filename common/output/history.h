@@ -223,7 +223,9 @@ namespace Friction
    * exists only once there was a cycle.
    *
    * Each dataset has the attribute `label`, what it is in a few words, and
-   * `units` if it has a unit with a name, see unit_of().
+   * `units` if it has a unit with a name, see unit_of(). Those of
+   * contact nodes have them on the last level, since each attribute takes as
+   * long to write as a small dataset.
    *
    * Beside the file stands `levels.csv`, the table of `/levels` as text, a line
    * per level. Its first line has the names of the columns, with their units in

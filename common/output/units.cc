@@ -55,7 +55,9 @@ namespace Friction
         case Quantity::energy_norm:
           {
             const std::string energy = product(names, 1, 1 + per_thickness);
-            return energy.empty() ? "" : '(' + energy + ")^(1/2)";
+            if (energy.empty())
+              return "";
+            return (dim == 2 ? energy : '(' + energy + ')') + "^(1/2)";
           }
         case Quantity::time:
           return "s";

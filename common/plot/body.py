@@ -134,7 +134,7 @@ def draw_space(panels, mesh, values, view, norm, factor=1.):
     # Where the mesh gets finer on a curved surface there are chinks: what is behind
     # them has the colour of the faces around.
     for axes in panels:
-        for line, thickness in ((colours, 0.6), (edges, width)):
+        for line, thickness in ((colours, 2.), (edges, width)):
             axes.add_collection(PolyCollection(
                 view(corners[order]), facecolors=colours, edgecolors=line,
                 linewidths=thickness, rasterized=True))

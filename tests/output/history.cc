@@ -5,6 +5,7 @@
 
 #include <common/output/history.h>
 #include <common/output/run_directory.h>
+#include <common/output/units.h>
 
 #include <deal.II/base/hdf5.h>
 #include <deal.II/base/mpi.h>
@@ -13,51 +14,30 @@
 #include <fstream>
 #include <iostream>
 #include <set>
-#include <sstream>
 
 using namespace Friction;
 
 namespace
 {
-  // What is the unit of each kind of number?
-  template <int dim>
+  // The units of all kinds of numbers.
   void
-  print_units(const Parameters::UnitNames &units)
+  print_units(const Parameters::UnitNames &names)
   {
-    const RunDirectory directory("history-test/units");
-    History<dim>       history(directory.file("history.h5"),
-                         {"scene", "", "0", units});
-    ContactRecord<dim> node;
-    history.add_level(LevelRecord(),
-                      std::vector<CycleRecord>(1),
-                      std::vector<ContactRecord<dim>>(1, node));
-    const dealii::HDF5::File file(directory.file("history.h5"),
-                                  dealii::HDF5::File::FileAccessMode::open);
-    std::cout << dim << "D, length '" << units.length << "', force '"
-              << units.force << "'" << std::endl;
-    for (const std::string name : {"levels/energy",
-                                   "levels/estimated_error",
-                                   "levels/normal_force",
-                                   "levels/max_pressure",
-                                   "levels/stick_half_width",
-                                   "levels/solve_seconds",
-                                   "cycles/residual",
-                                   "contact/level_00/measure",
-                                   "contact/level_00/force",
-                                   "contact/level_00/slip",
-                                   "contact/level_00/friction_bound"})
+    std::cout << "length '" << names.length << "', force '" << names.force
+              << "'" << std::endl;
+    for (const unsigned int dim : {2, 3})
       {
-        const auto  data = file.open_dataset(name);
-        std::string unit = "none";
-        try
-          {
-            unit = data.template get_attribute<std::string>("units");
-          }
-        catch (const std::exception &)
-          {}
-        std::cout << "  " << name << ", "
-                  << data.template get_attribute<std::string>("label") << ": "
-                  << unit << std::endl;
+        std::cout << "  " << dim << "D:";
+        for (const Quantity quantity : {Quantity::number,
+                                        Quantity::length,
+                                        Quantity::area,
+                                        Quantity::force,
+                                        Quantity::stress,
+                                        Quantity::energy,
+                                        Quantity::energy_norm,
+                                        Quantity::time})
+          std::cout << " '" << unit_of(quantity, dim, names) << '\'';
+        std::cout << std::endl;
       }
   }
 } // namespace
@@ -164,7 +144,19 @@ main(int argc, char **argv)
   std::cout << "levels.csv" << std::endl
             << std::ifstream(directory.file("levels.csv")).rdbuf();
 
-  print_units<2>({"mm", "N"});
-  print_units<3>({"mm", "N"});
-  print_units<3>({"m", ""});
+  for (const std::string dataset : {"levels/energy",
+                                    "levels/max_pressure",
+                                    "levels/solve_seconds",
+                                    "cycles/residual",
+                                    "contact/level_02/slip",
+                                    "contact/level_02/friction_bound"})
+    {
+      const auto data = file.open_dataset(dataset);
+      std::cout << dataset << ": " << data.get_attribute<std::string>("label")
+                << ", " << data.get_attribute<std::string>("units")
+                << std::endl;
+    }
+  print_units({"mm", "N"});
+  print_units({"m", ""});
+  print_units({"", ""});
 }
