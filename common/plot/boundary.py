@@ -13,39 +13,83 @@ def tractions(nodes):
     return pressure, traction + pressure[:, None] * normal
 
 
+# Up to so many nodes each is compared with all others.
+FEW_NODES = 2000
+# Several parts of a picture ask for the same.
+_known = []
+
+
 def chains(points, measure):
     """Contact nodes of the plane in the order in which the boundary runs through them:
     a list of arrays of indices, one per connected piece of it. Neighbours are not
     further from each other than the sum of their measures, each of which is half of
     what lies between a node and its neighbours."""
-    left = set(range(len(points)))
+    for known_points, pieces in _known:
+        if known_points is points:
+            return pieces
+    nearby = Nearby(points)
+    is_left = np.ones(len(points), bool)
     result = []
-    while left:
-        start = min(left)
+    while is_left.any():
         # A walk ends at an end, from which the next one sees the whole piece.
-        end = walk(points, measure, start, left)[-1]
-        chain = walk(points, measure, end, left)
-        left -= set(chain)
+        end = walk(points, measure, int(np.argmax(is_left)), is_left, nearby)[-1]
+        chain = walk(points, measure, end, is_left, nearby)
+        is_left[chain] = False
         result.append(np.array(chain))
+    _known[:] = [*_known[-8:], (points, result)]
     return result
 
 
-def walk(points, measure, start, allowed):
+def walk(points, measure, start, allowed, nearby):
     """From a node to the nearest one that has not been visited, and so on."""
-    open_nodes = np.zeros(len(points), bool)
-    open_nodes[list(allowed)] = True
+    is_open = allowed.copy()
     chain = [start]
-    open_nodes[start] = False
-    while True:
+    is_open[start] = False
+
+    def closest(candidates):
         here = chain[-1]
-        distance = np.linalg.norm(points - points[here], axis=1)
-        near = open_nodes & (distance <= 1.01 * (measure + measure[here]))
+        candidates = candidates[is_open[candidates]]
+        distance = np.hypot(*(points[candidates] - points[here]).T)
+        near = distance <= 1.01 * (measure[candidates] + measure[here])
         if not near.any():
+            return None
+        return int(candidates[near][np.argmin(distance[near])])
+
+    while True:
+        following = closest(nearby.to(chain[-1]))
+        if following is None and not nearby.has_all:
+            following = closest(np.flatnonzero(is_open))
+        if following is None:
             return chain
-        candidates = np.flatnonzero(near)
-        following = candidates[np.argmin(distance[candidates])]
-        open_nodes[following] = False
+        is_open[following] = False
         chain.append(following)
+
+
+class Nearby:
+    """Where to look for the neighbours of a node: the boundary is a graph over x or over
+    y nearly everywhere, so that neighbours are neighbours if nodes are sorted by it."""
+
+    WIDTH = 16
+
+    def __init__(self, points):
+        self.has_all = len(points) <= FEW_NODES
+        self._all = np.arange(len(points))
+        self._orders = []
+        if not self.has_all:
+            # Up to rounding, where several have the same.
+            places = np.round(points / (np.ptp(points) * 1e-9)).astype(np.int64)
+            for first, second in ((0, 1), (1, 0)):
+                order = np.lexsort((places[:, second], places[:, first]))
+                position = np.empty(len(points), int)
+                position[order] = self._all
+                self._orders.append((order, position))
+
+    def to(self, node):
+        if self.has_all:
+            return self._all
+        return np.concatenate([
+            order[max(position[node] - self.WIDTH, 0):position[node] + self.WIDTH + 1]
+            for order, position in self._orders])
 
 
 class Line:

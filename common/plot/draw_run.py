@@ -13,18 +13,6 @@ from drawing import (BLUE, GREEN, GREY, PHASE_NAMES, PHASES, RED, STRESS, plt)
 from failure import Failure
 from fields import read_fields, select_field
 
-PANELS = ("body", "contact", "convergence")
-
-
-class Choice:
-    """What is to be drawn: the level, panels (some of PANELS), field, range of its
-    scale (or None), and factor of displacements."""
-
-    def __init__(self, level=None, panels=PANELS, field="von_Mises_stress",
-                 scale=None, warp=1.):
-        self.level, self.panels, self.field = level, panels, field
-        self.scale, self.warp = scale, warp
-
 
 def draw_run(run, choice):
     """A figure. Raises Failure."""

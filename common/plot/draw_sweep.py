@@ -6,23 +6,7 @@ import numpy as np
 from matplotlib.colors import Normalize
 
 from drawing import BLUE, RED, STRESS, plt
-from failure import Failure
-
-
-def quantity(row, name):
-    """A column of a level, or a quotient of two. Raises Failure."""
-    values = []
-    for part in name.split("/"):
-        key = part.strip().replace(" ", "_")
-        if key not in row:
-            raise Failure(f"there is no quantity '{part.strip()}'; there are "
-                          f"{', '.join(sorted(row))}.")
-        values.append(float(row[key]))
-    if len(values) > 2:
-        raise Failure(f"'{name}' is no quotient of two quantities.")
-    if len(values) == 1:
-        return values[0]
-    return values[0] / values[1] if values[1] != 0 else np.nan
+from history import quantity
 
 
 def title_of(example, name):

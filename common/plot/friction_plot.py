@@ -19,6 +19,7 @@ something is wrong, which one sentence says."""
 
 import argparse
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 NEEDED = {"matplotlib": "python3-matplotlib", "h5py": "python3-h5py",
@@ -50,9 +51,9 @@ def parse_drawing(arguments):
 
 
 def draw(options):
-    """Draws runs; returns the name of the picture."""
-    from draw_comparison import draw_comparison
-    from draw_run import PANELS, Choice, draw_run
+    """Draws runs; returns the name of the picture. What takes long to load is loaded
+    when everything has been looked at."""
+    from choice import PANELS, Choice
     from failure import Failure
     from fields import field_names, read_fields
     from history import Run
@@ -75,49 +76,50 @@ def draw(options):
         mesh = read_fields(runs[0].directory, "body", level)
         return ("" if mesh is None else "\n".join(field_names(mesh)))
     if one:
+        from draw_run import draw_run
+
         output = output or check_ending(runs[0].directory / "picture.png")
         figure = draw_run(runs[0], Choice(options.level, panels, options.field,
                                           options.range, options.warp))
     else:
+        from draw_comparison import draw_comparison
+
         output = output or check_ending(Path("comparison.png"))
         figure = draw_comparison(runs)
     write_picture(figure, output)
     return f"{output}"
 
 
-def missing_module():
-    """A sentence, or nothing."""
-    for module, package in NEEDED.items():
-        try:
-            __import__(module)
-        except ImportError as error:
-            # A module that is there may want another one that is not.
-            name = (error.name or module).split(".")[0]
-            return (f"Python has no module '{name}'; on Debian install "
-                    f"{NEEDED.get(name, package)}.")
-    return ""
+def without(name):
+    """A sentence about a module that is missing."""
+    name = (name or "").split(".")[0]
+    return (f"Python has no module '{name}'; on Debian install "
+            f"{NEEDED.get(name, name)}.")
 
 
 def main(arguments):
-    if arguments[:1] == ["sweep"]:
+    is_sweep = arguments[:1] == ["sweep"]
+    if is_sweep:
         from sweep_options import parse_sweep
         options = parse_sweep(arguments[1:])
     else:
         options = parse_drawing(arguments)
-    missing = missing_module()
-    if missing:
-        print(f"{NAME}: {missing}", file=sys.stderr)
-        return 2
     from failure import Failure
     try:
-        if arguments[:1] == ["sweep"]:
+        for name in NEEDED:
+            if find_spec(name) is None:
+                raise Failure(without(name))
+        if is_sweep:
             from sweep import sweep
             return sweep(options)
         print(draw(options))
         return 0
     except Failure as failure:
         print(f"{NAME}: {failure}", file=sys.stderr)
-        return 2
+    except ImportError as error:
+        # A module that is there may want another one that is not.
+        print(f"{NAME}: {without(error.name)}", file=sys.stderr)
+    return 2
 
 
 if __name__ == "__main__":

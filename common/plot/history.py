@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import h5py
+import numpy as np
 
 from failure import Failure
 
@@ -24,6 +25,22 @@ def entries_of(text):
 
 def text_of(attribute):
     return attribute.decode() if isinstance(attribute, bytes) else str(attribute)
+
+
+def quantity(row, name):
+    """A column of a level, or a quotient of two. Raises Failure."""
+    values = []
+    for part in name.split("/"):
+        key = part.strip().replace(" ", "_")
+        if key not in row:
+            raise Failure(f"there is no quantity '{part.strip()}'; there are "
+                          f"{', '.join(sorted(row))}.")
+        values.append(float(row[key]))
+    if len(values) > 2:
+        raise Failure(f"'{name}' is no quotient of two quantities.")
+    if len(values) == 1:
+        return values[0]
+    return values[0] / values[1] if values[1] != 0 else np.nan
 
 
 class Run:

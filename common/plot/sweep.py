@@ -14,8 +14,9 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from failure import Failure
-from history import Run
+from history import Run, quantity
 from sweep_options import find_program
+from write_picture import check_ending, write_picture
 
 RECORD = "sweep.json"
 NAME = "friction-plot"
@@ -227,9 +228,6 @@ def write_then_rename(path, text):
 
 def sweep(options):
     """Runs, writes and draws; returns the exit status. Raises Failure."""
-    from draw_sweep import draw_sweep, quantity
-    from write_picture import check_ending, write_picture
-
     signal.signal(signal.SIGTERM, lambda *_: signal.raise_signal(signal.SIGINT))
     runs = Sweep(options)
     shown = options.show or ["max_pressure"]
@@ -247,6 +245,8 @@ def sweep(options):
         raise Failure(f"all {len(table)} runs have failed, the first one with: {first}")
     for name in shown:
         quantity(example.row(example.last), name)
+    from draw_sweep import draw_sweep
+
     output = output or check_ending(runs.directory / "sweep.png")
     write_picture(draw_sweep(runs, table, example, shown), output)
     print(output)

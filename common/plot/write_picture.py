@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-from drawing import plt, save
 from failure import Failure
 
 ENDINGS = (".png", ".svg", ".pdf")
@@ -21,6 +20,8 @@ def check_ending(path):
 
 def write_picture(figure, path):
     """Nothing in a file depends on when it was written. Raises Failure."""
+    from drawing import plt, save
+
     try:
         if path.suffix.lower() == ".png":
             save(figure, path.parent, path.name)

@@ -115,6 +115,21 @@ def test_line():
               and np.array_equal(np.argsort(line.place),
                                  np.argsort(mixed["point"][:, 0])),
               "all of it is as long as it is")
+    # The same with so many nodes that not all of them are compared.
+    few, boundary.FEW_NODES = boundary.FEW_NODES, 10
+    same = boundary.chains(mixed["point"].copy(), mixed["measure"])
+    boundary.FEW_NODES = few
+    check(len(same) == 1 and np.array_equal(
+        np.sort(same[0]), np.arange(len(angles))) and len(set(np.sign(
+            np.diff(mixed["point"][same[0], 0])))) == 1, "also if they are many")
+    # A ring, fine below and coarse above.
+    around = np.concatenate([np.linspace(0, np.pi, 40, endpoint=False),
+                             np.linspace(np.pi, 2 * np.pi, 3000, endpoint=False)])
+    ring = np.stack([np.cos(around), np.sin(around)], axis=1)
+    length = np.linalg.norm(np.roll(ring, -1, axis=0) - ring, axis=1)
+    for piece in [boundary.chains(ring, (length + np.roll(length, 1)) / 2)]:
+        check(len(piece) == 1 and (np.abs(np.diff(piece[0])) % (len(ring) - 2) == 1).all(),
+              "a ring is one piece")
     # Two pieces.
     left = {name: values[angles < -0.3] for name, values in nodes.items()}
     right = {name: values[angles > 0.3] for name, values in nodes.items()}
