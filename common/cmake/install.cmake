@@ -1,8 +1,7 @@
 # What cmake --install puts in place, below one prefix: both step programs, their
-# scenes, the program that verifies their results, the library with its headers, and
-# what find_package(friction) needs. Other
-# programs then link with friction::friction and include <common/...> as the steps
-# do.
+# scenes, the programs that verify and draw their results, the library with its headers,
+# and what find_package(friction) needs. Other programs then link with friction::friction
+# and include <common/...> as the steps do.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -26,7 +25,7 @@ install(TARGETS friction EXPORT friction-targets
   INCLUDES DESTINATION ${_headers})
 install(DIRECTORY common DESTINATION ${_headers}
   FILES_MATCHING PATTERN "*.h"
-  PATTERN cmake EXCLUDE PATTERN precompiled.h EXCLUDE)
+  PATTERN cmake EXCLUDE PATTERN plot EXCLUDE PATTERN precompiled.h EXCLUDE)
 foreach(_step step-friction-2d step-friction-3d)
   install(DIRECTORY ${_step}/scenes
     DESTINATION ${CMAKE_INSTALL_DATADIR}/friction/${_step})
@@ -41,6 +40,17 @@ install(PROGRAMS ${PROJECT_BINARY_DIR}/friction-verify
   DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY tests/verify/ DESTINATION ${_verify}
   FILES_MATCHING PATTERN "*.py" PATTERN refute.py EXCLUDE PATTERN all_scenes.py EXCLUDE)
+
+set(_plot ${CMAKE_INSTALL_DATADIR}/friction/plot)
+file(RELATIVE_PATH _to_plot
+  ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_DATADIR}/friction/plot)
+configure_file(common/cmake/friction-plot.in ${PROJECT_BINARY_DIR}/friction-plot @ONLY)
+install(PROGRAMS ${PROJECT_BINARY_DIR}/friction-plot DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY common/plot/ DESTINATION ${_plot} FILES_MATCHING PATTERN "*.py")
+# In the build tree it lies beside the programs, too.
+set(_bin ${PROJECT_BINARY_DIR}/bin)
+file(RELATIVE_PATH _to_plot ${_bin} ${PROJECT_SOURCE_DIR}/common/plot)
+configure_file(common/cmake/friction-plot.in ${_bin}/friction-plot @ONLY)
 
 install(EXPORT friction-targets NAMESPACE friction:: DESTINATION ${_package})
 configure_package_config_file(common/cmake/friction-config.cmake.in

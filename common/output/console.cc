@@ -17,8 +17,9 @@ namespace Friction
     , show_times(times == Times::shown)
     , silent(silent || !first_process)
     , terminal(&out == &std::cout && ::isatty(STDOUT_FILENO) != 0)
-    , level_start(Clock::now())
-    , last_progress(level_start)
+    , start(Clock::now())
+    , level_start(start)
+    , last_progress(start)
   {}
 
 
@@ -70,14 +71,18 @@ namespace Friction
     using Seconds               = std::chrono::duration<double>;
     if (Seconds(now - level_start).count() < 2.)
       return;
-    // A terminal shows the present state, a log file should stay short.
-    if (Seconds(now - last_progress).count() < (terminal ? 0.2 : 20.))
+    // A terminal shows the present state. A file that somebody follows gets a
+    // line every few seconds, of a long run fewer, so that it stays short.
+    const double elapsed = Seconds(now - start).count();
+    if (Seconds(now - last_progress).count() <
+        (terminal ? 0.2 : std::max(5., .1 * elapsed)))
       return;
     last_progress = now;
 
     std::ostringstream line;
     line << "  level " << level << ": cycle " << cycle << ", increment "
-         << std::scientific << std::setprecision(1) << increment;
+         << std::scientific << std::setprecision(1) << increment << ", after "
+         << std::fixed << std::setprecision(0) << elapsed << " s";
     if (terminal)
       {
         const std::string text = line.str();

@@ -16,8 +16,9 @@ namespace Friction
    * The table a run prints: one row per level, as the level completes, and a
    * sign of life inside long levels.
    *
-   * On a terminal the sign of life is one line that is overwritten; in a log
-   * file it is a line of its own now and then. Nothing of what depends on the
+   * On a terminal the sign of life is one line that is overwritten; in a file
+   * it is a line of its own every five seconds, and later on every time that
+   * the run has got longer by a tenth. Nothing of what depends on the
    * clock is printed if times are switched off, so that the output can be
    * compared from run to run.
    *
@@ -94,6 +95,7 @@ namespace Friction
     unsigned int      rows = 0;
     std::vector<Note> remarks;
     std::size_t       progress_width = 0;
+    Clock::time_point start;
     Clock::time_point level_start;
     Clock::time_point last_progress;
   };

@@ -110,49 +110,101 @@ namespace Friction
 
 
 
-    std::vector<std::string>
-    stress_names(const unsigned int dim)
-    {
-      std::vector<std::string> names = {
-        "stress_xx", "stress_yy", "stress_zz", "stress_xy"};
-      if (dim == 3)
-        {
-          names.emplace_back("stress_yz");
-          names.emplace_back("stress_xz");
-        }
-      names.emplace_back("von_Mises_stress");
-      return names;
-    }
+    // The components of a symmetric tensor, in the order of VTK.
+    constexpr unsigned int                    n_stresses   = 6;
+    const std::array<std::string, n_stresses> stress_names = {{"stress_xx",
+                                                               "stress_yy",
+                                                               "stress_zz",
+                                                               "stress_xy",
+                                                               "stress_yz",
+                                                               "stress_xz"}};
 
 
 
-    // In the order of their names.
+    // Always a 3x3 tensor: in plane strain the third normal strain is zero, but
+    // the third normal stress is not.
     template <int dim>
-    std::array<double, 2 * dim + 1>
-    stress_values(const Tensor<2, dim> &gradient,
+    SymmetricTensor<2, 3>
+    stress_tensor(const Tensor<2, dim> &gradient,
                   const double          volumetric_strain,
                   const Material       &material)
     {
-      // Always a 3x3 tensor: in plane strain the third normal strain is zero,
-      // but the third normal stress is not.
       SymmetricTensor<2, 3> stress =
         material.lambda() * volumetric_strain * unit_symmetric_tensor<3>();
       for (unsigned int i = 0; i < dim; ++i)
         for (unsigned int j = i; j < dim; ++j)
           stress[i][j] += material.mu() * (gradient[i][j] + gradient[j][i]);
+      return stress;
+    }
 
-      std::array<double, 2 * dim + 1> values;
-      values[0] = stress[0][0];
-      values[1] = stress[1][1];
-      values[2] = stress[2][2];
-      values[3] = stress[0][1];
-      if constexpr (dim == 3)
-        {
-          values[4] = stress[1][2];
-          values[5] = stress[0][2];
-        }
-      values[2 * dim] = std::sqrt(1.5) * deviator(stress).norm();
-      return values;
+
+
+    // The fields of the body that follow from the stress.
+    class StressFields
+    {
+    public:
+      StressFields(std::vector<VtuPiece::Field> &fields,
+                   const bool                    principal_stresses)
+        : principal_stresses(principal_stresses)
+        , fields(fields)
+        , first(fields.size())
+      {
+        fields.push_back({"stress", n_stresses, {}});
+        fields.push_back({"von_Mises_stress", 1, {}});
+        if (principal_stresses)
+          for (const char *number : {"1", "2", "3"})
+            fields.push_back(
+              {std::string("principal_stress_") + number, 1, {}});
+      }
+
+      // Of the next cell.
+      void
+      add(const SymmetricTensor<2, 3> &stress) const
+      {
+        for (const double component : {stress[0][0],
+                                       stress[1][1],
+                                       stress[2][2],
+                                       stress[0][1],
+                                       stress[1][2],
+                                       stress[0][2]})
+          fields[first].values.push_back(static_cast<float>(component));
+        fields[first + 1].values.push_back(
+          static_cast<float>(std::sqrt(1.5) * deviator(stress).norm()));
+        if (principal_stresses)
+          {
+            const std::array<double, 3> values = eigenvalues(stress);
+            for (unsigned int i = 0; i < 3; ++i)
+              fields[first + 2 + i].values.push_back(
+                static_cast<float>(values[i]));
+          }
+      }
+
+    private:
+      const bool                    principal_stresses;
+      std::vector<VtuPiece::Field> &fields;
+      const std::size_t             first;
+    };
+
+
+
+    // The same fields with a tensor's components one by one, those left out
+    // that are zero in the plane.
+    template <int dim>
+    std::vector<VtuPiece::Field>
+    numbers_of_cells(const std::vector<VtuPiece::Field> &fields)
+    {
+      std::vector<VtuPiece::Field> numbers;
+      for (const VtuPiece::Field &field : fields)
+        if (field.n_components == 1)
+          numbers.push_back(field);
+        else
+          for (unsigned int c = 0; c < (dim == 2 ? 4 : n_stresses); ++c)
+            {
+              numbers.push_back({stress_names[c], 1, {}});
+              for (std::size_t i = c; i < field.values.size(); i += n_stresses)
+                numbers.back().values.push_back(field.values[i]);
+            }
+      return numbers;
     }
 
 
@@ -162,7 +214,8 @@ namespace Friction
     template <int dim>
     VtuPiece
     piece_of_body(const LevelFields<dim> &fields,
-                  const Materials<dim>   &materials)
+                  const Materials<dim>   &materials,
+                  const bool              principal_stresses)
     {
       const DoFHandler<dim>           &dof_handler = fields.dof_handler;
       const VolumetricStrainField<dim> volumetric_strain(
@@ -170,13 +223,13 @@ namespace Friction
 
       VtuPiece piece(dim == 2 ? VtuPiece::Cell::quadrilateral
                               : VtuPiece::Cell::hexahedron);
-      piece.point_fields.push_back({"displacement", true, {}});
-      for (const std::string &name : stress_names(dim))
-        piece.cell_fields.push_back({name, false, {}});
+      piece.point_fields.push_back({"displacement", 3, {}});
+      const StressFields stresses(piece.cell_fields, principal_stresses);
+      const std::size_t  modulus = piece.cell_fields.size();
       if (!materials.is_homogeneous())
-        piece.cell_fields.push_back({"youngs_modulus", false, {}});
+        piece.cell_fields.push_back({"youngs_modulus", 1, {}});
       if (fields.cell_errors != nullptr)
-        piece.cell_fields.push_back({"estimated_error", false, {}});
+        piece.cell_fields.push_back({"estimated_error", 1, {}});
 
       // Differences of displacements need more digits than are written.
       std::vector<Tensor<1, dim>> displacements;
@@ -206,15 +259,12 @@ namespace Friction
             const Tensor<2, dim> gradient = derivatives_in_the_middle(values) *
               invert(derivatives_in_the_middle(places));
             const Material &material = materials.of(cell);
-            const auto      stresses = stress_values(
+            stresses.add(stress_tensor(
               gradient,
               volumetric_strain.value(cell, material, trace(gradient)),
-              material);
-            for (unsigned int i = 0; i < stresses.size(); ++i)
-              piece.cell_fields[i].values.push_back(
-                static_cast<float>(stresses[i]));
+              material));
             if (!materials.is_homogeneous())
-              piece.cell_fields[stresses.size()].values.push_back(
+              piece.cell_fields[modulus].values.push_back(
                 static_cast<float>(material.youngs_modulus()));
             if (fields.cell_errors != nullptr)
               piece.cell_fields.back().values.push_back(
@@ -230,15 +280,15 @@ namespace Friction
 
 
 
-    // What is shown in a point of the contact boundary: four vectors, then
-    // four numbers.
-    constexpr unsigned int n_contact_vectors = 4;
-    constexpr unsigned int n_contact_scalars = 4;
+    // What is known of a contact node: three vectors, then five numbers. Of
+    // these and the displacement, what is shown in a point.
+    constexpr unsigned int n_contact_vectors = 3;
+    constexpr unsigned int n_contact_scalars = 5;
 
     const std::array<std::string, n_contact_vectors> contact_vector_names = {
-      {"displacement", "traction", "tangential_traction", "normal"}};
+      {"traction", "tangential_traction", "normal"}};
     const std::array<std::string, n_contact_scalars> contact_scalar_names = {
-      {"pressure", "gap", "distance", "state"}};
+      {"pressure", "friction_bound", "gap", "distance", "state"}};
 
 
 
@@ -258,16 +308,44 @@ namespace Friction
       ContactData<dim> data;
       for (unsigned int c = 0; c < dim; ++c)
         {
-          data[c]           = record.displacement[c];
-          data[dim + c]     = traction[c];
-          data[2 * dim + c] = traction[c] + pressure * record.normal[c];
-          data[3 * dim + c] = record.normal[c];
+          data[c]           = traction[c];
+          data[dim + c]     = traction[c] + pressure * record.normal[c];
+          data[2 * dim + c] = record.normal[c];
         }
-      data[4 * dim]     = pressure;
-      data[4 * dim + 1] = record.gap;
-      data[4 * dim + 2] = record.gap - record.displacement * record.normal;
-      data[4 * dim + 3] = record.state;
+      data[3 * dim]     = pressure;
+      data[3 * dim + 1] = record.friction_bound;
+      data[3 * dim + 2] = record.gap;
+      data[3 * dim + 3] = record.gap - record.displacement * record.normal;
+      data[3 * dim + 4] = record.state;
       return data;
+    }
+
+
+
+    // Where there is contact, the tangential part of the displacement.
+    template <int dim>
+    Tensor<1, dim>
+    slip_of_point(const Tensor<1, dim>   &displacement,
+                  const ContactData<dim> &data)
+    {
+      Tensor<1, dim> normal;
+      for (unsigned int c = 0; c < dim; ++c)
+        normal[c] = data[2 * dim + c];
+      const double state = data[3 * dim + 4];
+      if (state == 0. || normal.norm_square() == 0.)
+        return Tensor<1, dim>();
+      return displacement -
+        (displacement * normal) / normal.norm_square() * normal;
+    }
+
+
+
+    template <int dim>
+    void
+    append_vector(const Tensor<1, dim> &vector, VtuPiece::Field &field)
+    {
+      for (unsigned int c = 0; c < 3; ++c)
+        field.values.push_back(c < dim ? static_cast<float>(vector[c]) : 0.F);
     }
   } // namespace
 
@@ -277,11 +355,13 @@ namespace Friction
   FieldWriter<dim>::FieldWriter(const RunDirectory      &directory,
                                 const Materials<dim>    &materials,
                                 const types::boundary_id contact_boundary,
-                                const FieldFormat        format)
+                                const FieldFormat        format,
+                                const bool               principal_stresses)
     : directory(directory)
     , materials(materials)
     , contact_boundary(contact_boundary)
     , format(format)
+    , principal_stresses(principal_stresses)
   {}
 
 
@@ -308,7 +388,7 @@ namespace Friction
   FieldWriter<dim>::write_body(const unsigned int      level,
                                const LevelFields<dim> &fields)
   {
-    const VtuPiece piece = piece_of_body(fields, materials);
+    const VtuPiece piece = piece_of_body(fields, materials, principal_stresses);
     if (format == FieldFormat::hdf5)
       write_body_hdf5(level, fields, piece);
     else
@@ -415,17 +495,18 @@ namespace Friction
       DataOut<dim>::type_dof_data,
       std::vector<DataComponentInterpretation::DataComponentInterpretation>(
         dim, DataComponentInterpretation::component_is_part_of_vector));
-    std::vector<Vector<float>> cell_data(piece.cell_fields.size());
+    const std::vector<VtuPiece::Field> cell_fields =
+      numbers_of_cells<dim>(piece.cell_fields);
+    std::vector<Vector<float>> cell_data(cell_fields.size());
     for (unsigned int i = 0; i < cell_data.size(); ++i)
       {
         cell_data[i].reinit(dof_handler.get_triangulation().n_active_cells());
-        auto value = piece.cell_fields[i].values.begin();
+        auto value = cell_fields[i].values.begin();
         for (const auto &cell : dof_handler.active_cell_iterators())
           if (cell->is_locally_owned())
             cell_data[i](cell->active_cell_index()) = *value++;
-        data_out.add_data_vector(cell_data[i],
-                                 piece.cell_fields[i].name,
-                                 DataOut<dim>::type_cell_data);
+        data_out.add_data_vector(
+          cell_data[i], cell_fields[i].name, DataOut<dim>::type_cell_data);
       }
     data_out.build_patches(fields.mapping);
 
@@ -535,10 +616,12 @@ namespace Friction
 
     VtuPiece piece(dim == 2 ? VtuPiece::Cell::line
                             : VtuPiece::Cell::quadrilateral);
+    for (const char *name : {"displacement", "slip"})
+      piece.point_fields.push_back({name, 3, {}});
     for (const std::string &name : contact_vector_names)
-      piece.point_fields.push_back({name, true, {}});
+      piece.point_fields.push_back({name, 3, {}});
     for (const std::string &name : contact_scalar_names)
-      piece.point_fields.push_back({name, false, {}});
+      piece.point_fields.push_back({name, 1, {}});
 
     PointNumbers<dim> points(dof_handler.get_triangulation(), piece);
     for (const auto &cell : dof_handler.active_cell_iterators())
@@ -560,16 +643,24 @@ namespace Friction
                 if (!points.add(face->vertex_index(v), place).second)
                   continue;
 
-                ContactData<dim> data = data_at(face->vertex_dof_index(v, 0));
+                const ContactData<dim> data =
+                  data_at(face->vertex_dof_index(v, 0));
                 // The displacement is known everywhere.
+                Tensor<1, dim> u;
                 for (unsigned int c = 0; c < dim; ++c)
-                  data[c] = displacement(face->vertex_dof_index(v, c));
+                  u[c] = displacement(face->vertex_dof_index(v, c));
+                auto field = piece.point_fields.begin();
+                append_vector(u, *field++);
+                append_vector(slip_of_point(u, data), *field++);
                 for (unsigned int k = 0; k < n_contact_vectors; ++k)
-                  for (unsigned int c = 0; c < 3; ++c)
-                    piece.point_fields[k].values.push_back(
-                      c < dim ? static_cast<float>(data[k * dim + c]) : 0.F);
+                  {
+                    Tensor<1, dim> vector;
+                    for (unsigned int c = 0; c < dim; ++c)
+                      vector[c] = data[k * dim + c];
+                    append_vector(vector, *field++);
+                  }
                 for (unsigned int k = 0; k < n_contact_scalars; ++k)
-                  piece.point_fields[n_contact_vectors + k].values.push_back(
+                  (field++)->values.push_back(
                     static_cast<float>(data[n_contact_vectors * dim + k]));
               }
           }

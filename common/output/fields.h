@@ -60,28 +60,34 @@ namespace Friction
    * have single, points double precision; nothing is compressed, see
    * write_vtu().
    *
-   * Body: the vector `displacement` in the points, and in the cells
-   * `stress_xx`, `stress_yy`, `stress_zz`, `stress_xy` (3D also `stress_yz`,
-   * `stress_xz`) and `von_Mises_stress`, and `estimated_error` if it is given.
-   * Stresses are those in the middle of the cell: of the stresses of bilinear
-   * and trilinear elements, which jump between cells, these are the most
-   * accurate. With VolumetricStrain::mean their trace has that mean in it.
-   * ParaView's filter Cell Data to Point Data averages them in the points. In
-   * 2D plane strain is assumed, from which the third normal stress follows.
+   * Body: the vector `displacement` in the points, and in the cells the tensor
+   * `stress`, which is symmetric and has the components XX, YY, ZZ, XY, YZ, XZ,
+   * the numbers `von_Mises_stress`, and `principal_stress_1` to
+   * `principal_stress_3` if they are wanted, the largest first, and
+   * `estimated_error` if it is given. Stresses are those in the middle of the
+   * cell: of the stresses of bilinear and trilinear elements, which jump
+   * between cells, these are the most accurate. With VolumetricStrain::mean
+   * their trace has that mean in it. ParaView's filter Cell Data to Point Data
+   * averages them in the points. In 2D plane strain is assumed, from which the
+   * third normal stress follows.
    *
    * Contact boundary: the vectors `displacement`, `traction` (of the obstacle
-   * on the body), `tangential_traction`, and `normal`; the numbers `pressure`
-   * (positive in compression), `gap`, `distance` (gap minus normal
-   * displacement, 0 in contact) and `state` (0 open, 1 sliding, 2 sticking).
-   * Nodal tractions are nodal forces over nodal measures. In 2D vectors get a
-   * third component 0, as the format demands.
+   * on the body), `tangential_traction`, `normal`, and `slip`, the tangential
+   * displacement where there is contact; the numbers `pressure` (positive in
+   * compression), `friction_bound` (what friction allows of
+   * `tangential_traction`), `gap`, `distance` (gap minus normal displacement, 0
+   * in contact) and `state` (0 open, 1 sliding, 2 sticking). Nodal tractions
+   * are nodal forces over nodal measures. In 2D vectors get a third component
+   * 0, as the format demands.
    *
    * With FieldFormat::hdf5 the body is written by all processes together, one
    * `body-NN.h5` per level, and ParaView opens `body.xdmf`, which describes all
    * of them. The numbers are the same, but that format of deal.II has points
    * for each cell of its own and no data of cells: those are repeated in the
    * cell's corners. In 2D the points have two coordinates, and all numbers take
-   * the room of double precision. The contact boundary remains as above.
+   * the room of double precision. The components of `stress` are fields of
+   * their own there, `stress_xx` and so on, those that are zero in 2D left out.
+   * The contact boundary remains as above.
    */
   template <int dim>
   class FieldWriter
@@ -94,11 +100,13 @@ namespace Friction
      * @param materials        from which stresses follow.
      * @param contact_boundary boundary id of $\Gamma_S$.
      * @param format           of the files of the body.
+     * @param principal_stresses  whether the body has these.
      */
     FieldWriter(const RunDirectory              &directory,
                 const Materials<dim>            &materials,
                 const dealii::types::boundary_id contact_boundary,
-                const FieldFormat                format = FieldFormat::vtu);
+                const FieldFormat                format = FieldFormat::vtu,
+                const bool                       principal_stresses = false);
 
     /**
      * Write the fields of a level. A collective operation; an error of one
@@ -147,6 +155,7 @@ namespace Friction
     const Materials<dim>             materials;
     const dealii::types::boundary_id contact_boundary;
     const FieldFormat                format;
+    const bool                       principal_stresses;
 
     TimesAndNames                  body_files;
     TimesAndNames                  contact_files;

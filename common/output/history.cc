@@ -1,47 +1,257 @@
 #include <common/output/history.h>
 #include <common/output/run_directory.h>
+#include <common/output/units.h>
 #include <common/parallel/collective_error.h>
 
 #include <deal.II/base/hdf5.h>
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <iomanip>
+#include <sstream>
+#include <type_traits>
 
 namespace Friction
 {
   namespace
   {
-    // One dataset: the same member of every record.
-    template <typename Record, typename Number>
+    using Q = Quantity;
+
+    // All columns of a table: a name, what it is, its quantity, and the member
+    // of the record.
+    template <int dim, typename F>
     void
-    write_column(const dealii::HDF5::Group &group,
+    for_each_level_column(const F &column)
+    {
+      using R = LevelRecord;
+      column("level", "level of refinement", Q::number, &R::level);
+      column("cells", "cells", Q::number, &R::cells);
+      column("dofs", "degrees of freedom", Q::number, &R::dofs);
+      column("contact_nodes", "nodes in contact", Q::number, &R::contact_nodes);
+      column("sticky_nodes", "nodes that stick", Q::number, &R::sticky_nodes);
+      column("outer_iterations",
+             "outer iterations",
+             Q::number,
+             &R::outer_iterations);
+      column("attempts", "methods tried", Q::number, &R::attempts);
+      column("cycles", "multigrid cycles", Q::number, &R::cycles);
+      column("contraction",
+             "mean contraction of increments per cycle",
+             Q::number,
+             &R::contraction);
+      column("rho_tau",
+             "mean relative change of the normal forces per outer iteration",
+             Q::number,
+             &R::rho_tau);
+      column("rho_tau_contraction",
+             "contraction of these changes",
+             Q::number,
+             &R::rho_tau_contraction);
+      column(
+        "energy", "elastic energy minus work of loads", Q::energy, &R::energy);
+      column("algebraic_error",
+             "error of the iteration in the energy norm, extrapolated",
+             Q::energy_norm,
+             &R::algebraic_error);
+      column("normal_force", "total normal force", Q::force, &R::normal_force);
+      column("tangential_force",
+             "norm of the total tangential force",
+             Q::force,
+             &R::tangential_force);
+      column(
+        "max_pressure", "peak contact pressure", Q::stress, &R::max_pressure);
+      column("contact_half_width",
+             dim == 2 ? "half-width of the contact zone"
+                      : "radius of a disc as large as the contact zone",
+             Q::length,
+             &R::contact_half_width);
+      column("stick_half_width",
+             dim == 2 ? "half-width of the zone that sticks"
+                      : "radius of a disc as large as the zone that sticks",
+             Q::length,
+             &R::stick_half_width);
+      column("normal_force_error",
+             "estimated error of normal_force, negative if unknown",
+             Q::force,
+             &R::normal_force_error);
+      column("tangential_force_error",
+             "estimated error of tangential_force, negative if unknown",
+             Q::force,
+             &R::tangential_force_error);
+      column("max_pressure_error",
+             "estimated error of max_pressure, negative if unknown",
+             Q::stress,
+             &R::max_pressure_error);
+      column("contact_half_width_error",
+             "estimated error of contact_half_width, negative if unknown",
+             Q::length,
+             &R::contact_half_width_error);
+      column("stick_half_width_error",
+             "estimated error of stick_half_width, negative if unknown",
+             Q::length,
+             &R::stick_half_width_error);
+      column("pressure_resolution",
+             "what the distance of nodes leaves open of max_pressure",
+             Q::stress,
+             &R::pressure_resolution);
+      column("contact_resolution",
+             "what the distance of nodes leaves open of contact_half_width",
+             Q::length,
+             &R::contact_resolution);
+      column("stick_resolution",
+             "what the distance of nodes leaves open of stick_half_width",
+             Q::length,
+             &R::stick_resolution);
+      column("estimated_error",
+             "estimated error of the displacement in the energy norm",
+             Q::energy_norm,
+             &R::estimated_error);
+      column("certificate",
+             "largest violation of the discrete law, of the peak pressure",
+             Q::number,
+             &R::certificate);
+      column("setup_seconds", "time to set up", Q::time, &R::setup_seconds);
+      column("solve_seconds", "time to solve", Q::time, &R::solve_seconds);
+    }
+
+
+
+    template <typename F>
+    void
+    for_each_cycle_column(const F &column)
+    {
+      using R = CycleRecord;
+      column("level", "level of refinement", Q::number, &R::level);
+      column("increment",
+             "energy norm of the increment, of that of the displacement",
+             Q::number,
+             &R::increment);
+      column("energy", "energy after smoothing", Q::energy, &R::energy);
+      column("damping",
+             "step length of the coarse correction",
+             Q::number,
+             &R::step_length);
+      column("truncated",
+             "components without coarse correction",
+             Q::number,
+             &R::truncated);
+      column("residual",
+             "Euclidean norm of the truncated residual",
+             Q::force,
+             &R::residual);
+    }
+
+
+
+    template <typename F>
+    void
+    for_each_outer_column(const F &column)
+    {
+      using R = OuterRecord;
+      column("level", "level of refinement", Q::number, &R::level);
+      column("change",
+             "relative change of the normal forces",
+             Q::number,
+             &R::change);
+    }
+
+
+
+    template <int dim, typename F>
+    void
+    for_each_contact_column(const F &column)
+    {
+      using R = ContactRecord<dim>;
+      column("point", "place of the node", Q::length, &R::point);
+      column("normal", "outward normal of the body", Q::number, &R::normal);
+      column("displacement", "displacement", Q::length, &R::displacement);
+      column("slip", "slip along the obstacle", Q::length, &R::slip);
+      column("force", "force of the obstacle on the node", Q::force, &R::force);
+      column("gap", "gap along the normal", Q::length, &R::gap);
+      column("measure", "boundary around the node", Q::area, &R::measure);
+      column("friction_bound",
+             "largest tangential stress that friction allows",
+             Q::stress,
+             &R::friction_bound);
+      column("state", "0 open, 1 slides, 2 sticks", Q::number, &R::state);
+    }
+
+
+
+    // One dataset with a number of each record.
+    template <typename Number>
+    std::enable_if_t<std::is_arithmetic_v<Number>, dealii::HDF5::DataSet>
+    write_values(const dealii::HDF5::Group &group,
                  const std::string         &name,
-                 const std::vector<Record> &records,
-                 Number Record::*const member)
+                 const std::vector<Number> &values)
     {
-      std::vector<Number> values;
-      values.reserve(records.size());
-      for (const Record &record : records)
-        values.push_back(record.*member);
-      group.write_dataset(name, values);
+      auto data = group.create_dataset<Number>(name, {values.size()});
+      data.write(values);
+      return data;
+    }
+
+    // The same with a vector or a point of each: one row each.
+    template <typename VectorType>
+    std::enable_if_t<!std::is_arithmetic_v<VectorType>, dealii::HDF5::DataSet>
+    write_values(const dealii::HDF5::Group     &group,
+                 const std::string             &name,
+                 const std::vector<VectorType> &values)
+    {
+      dealii::FullMatrix<double> rows(values.size(), VectorType::dimension);
+      for (unsigned int i = 0; i < rows.m(); ++i)
+        for (unsigned int c = 0; c < rows.n(); ++c)
+          rows(i, c) = values[i][c];
+      auto data = group.create_dataset<double>(name, {rows.m(), rows.n()});
+      data.write(rows);
+      return data;
     }
 
 
 
-    // The same for a member with dim components: one row per record.
-    template <typename Record, typename VectorType>
-    void
-    write_rows(const dealii::HDF5::Group &group,
-               const std::string         &name,
-               const std::vector<Record> &records,
-               VectorType Record::*const member)
+    // Writes a column of a table as a dataset that says what it is, if there
+    // are names of units.
+    template <typename Record>
+    class ColumnWriter
     {
-      dealii::FullMatrix<double> values(records.size(), VectorType::dimension);
-      for (unsigned int i = 0; i < values.m(); ++i)
-        for (unsigned int c = 0; c < values.n(); ++c)
-          values(i, c) = (records[i].*member)[c];
-      group.write_dataset(name, values);
-    }
+    public:
+      ColumnWriter(const dealii::HDF5::Group   &group,
+                   const std::vector<Record>   &records,
+                   const unsigned int           dim,
+                   const Parameters::UnitNames *units)
+        : group(group)
+        , records(records)
+        , dim(dim)
+        , units(units)
+      {}
+
+      template <typename Member>
+      void
+      operator()(const std::string &name,
+                 const std::string &label,
+                 const Quantity     quantity,
+                 const Member       member) const
+      {
+        std::vector<std::decay_t<std::invoke_result_t<Member, const Record &>>>
+          values;
+        values.reserve(records.size());
+        for (const Record &record : records)
+          values.push_back(std::invoke(member, record));
+        dealii::HDF5::DataSet data = write_values(group, name, values);
+        if (units == nullptr)
+          return;
+        data.set_attribute("label", label);
+        const std::string unit = unit_of(quantity, dim, *units);
+        if (!unit.empty())
+          data.set_attribute("units", unit);
+      }
+
+    private:
+      const dealii::HDF5::Group    group;
+      const std::vector<Record>   &records;
+      const unsigned int           dim;
+      const Parameters::UnitNames *units;
+    };
 
 
 
@@ -55,15 +265,11 @@ namespace Friction
 
 
   template <int dim>
-  History<dim>::History(const std::string &file_name,
-                        const std::string &scene,
-                        const std::string &parameters,
-                        const std::string &version,
-                        const MPI_Comm     communicator)
+  History<dim>::History(const std::string    &file_name,
+                        const RunDescription &description,
+                        const MPI_Comm        communicator)
     : file_name(file_name)
-    , scene(scene)
-    , parameters(parameters)
-    , version(version)
+    , description(description)
     , communicator(communicator)
   {}
 
@@ -104,13 +310,14 @@ namespace Friction
   std::size_t
   History<dim>::payload() const
   {
-    std::size_t size = scene.size() + parameters.size() + version.size() +
+    std::size_t size = description.scene.size() +
+      description.parameters.size() + description.version.size() +
       level_records.size() * sizeof(LevelRecord) +
       cycle_records.size() * (2 * sizeof(unsigned int) + 4 * sizeof(double)) +
       outer_records.size() * (sizeof(unsigned int) + sizeof(double));
     for (const ContactLevel &contact : contact_levels)
       size += contact.nodes.size() *
-        ((4 * dim + 2) * sizeof(double) + sizeof(unsigned int));
+        ((5 * dim + 3) * sizeof(double) + sizeof(unsigned int));
     return size;
   }
 
@@ -149,6 +356,9 @@ namespace Friction
         throw InputError("The file '" + file_name +
                          "' cannot be written completely: is the disk full?");
     });
+    write_stream_then_rename(
+      (std::filesystem::path(file_name).parent_path() / "levels.csv").string(),
+      [&](std::ostream &out) { write_csv(out); });
   }
 
 
@@ -158,87 +368,55 @@ namespace Friction
   History<dim>::write_hdf5(const std::string &name) const
   {
     dealii::HDF5::File file(name, dealii::HDF5::File::FileAccessMode::create);
-    file.set_attribute("scene", scene);
-    file.set_attribute("parameters", parameters);
-    file.set_attribute("version", version);
+    file.set_attribute("scene", description.scene);
+    file.set_attribute("parameters", description.parameters);
+    file.set_attribute("version", description.version);
+    file.set_attribute("dimension", static_cast<unsigned int>(dim));
 
-    {
-      const dealii::HDF5::Group group = file.create_group("levels");
-      const auto write = [&](const std::string &column, const auto member) {
-        write_column(group, column, level_records, member);
-      };
-      write("level", &LevelRecord::level);
-      write("cells", &LevelRecord::cells);
-      write("dofs", &LevelRecord::dofs);
-      write("contact_nodes", &LevelRecord::contact_nodes);
-      write("sticky_nodes", &LevelRecord::sticky_nodes);
-      write("outer_iterations", &LevelRecord::outer_iterations);
-      write("attempts", &LevelRecord::attempts);
-      write("cycles", &LevelRecord::cycles);
-      write("contraction", &LevelRecord::contraction);
-      write("rho_tau", &LevelRecord::rho_tau);
-      write("rho_tau_contraction", &LevelRecord::rho_tau_contraction);
-      write("energy", &LevelRecord::energy);
-      write("algebraic_error", &LevelRecord::algebraic_error);
-      write("normal_force", &LevelRecord::normal_force);
-      write("tangential_force", &LevelRecord::tangential_force);
-      write("max_pressure", &LevelRecord::max_pressure);
-      write("contact_half_width", &LevelRecord::contact_half_width);
-      write("stick_half_width", &LevelRecord::stick_half_width);
-      write("normal_force_error", &LevelRecord::normal_force_error);
-      write("tangential_force_error", &LevelRecord::tangential_force_error);
-      write("max_pressure_error", &LevelRecord::max_pressure_error);
-      write("contact_half_width_error", &LevelRecord::contact_half_width_error);
-      write("stick_half_width_error", &LevelRecord::stick_half_width_error);
-      write("pressure_resolution", &LevelRecord::pressure_resolution);
-      write("contact_resolution", &LevelRecord::contact_resolution);
-      write("stick_resolution", &LevelRecord::stick_resolution);
-      write("estimated_error", &LevelRecord::estimated_error);
-      write("certificate", &LevelRecord::certificate);
-      write("setup_seconds", &LevelRecord::setup_seconds);
-      write("solve_seconds", &LevelRecord::solve_seconds);
-    }
-
+    for_each_level_column<dim>(ColumnWriter<LevelRecord>(
+      file.create_group("levels"), level_records, dim, &description.units));
     if (!cycle_records.empty())
-      {
-        const dealii::HDF5::Group group = file.create_group("cycles");
-        const auto write = [&](const std::string &column, const auto member) {
-          write_column(group, column, cycle_records, member);
-        };
-        write("level", &CycleRecord::level);
-        write("increment", &CycleRecord::increment);
-        write("energy", &CycleRecord::energy);
-        write("damping", &CycleRecord::step_length);
-        write("truncated", &CycleRecord::truncated);
-        write("residual", &CycleRecord::residual);
-      }
-
+      for_each_cycle_column(ColumnWriter<CycleRecord>(
+        file.create_group("cycles"), cycle_records, dim, &description.units));
     if (!outer_records.empty())
-      {
-        const dealii::HDF5::Group group = file.create_group("outer");
-        write_column(group, "level", outer_records, &OuterRecord::level);
-        write_column(group, "change", outer_records, &OuterRecord::change);
-      }
+      for_each_outer_column(ColumnWriter<OuterRecord>(
+        file.create_group("outer"), outer_records, dim, &description.units));
 
     if (!contact_levels.empty())
       {
-        using Record = ContactRecord<dim>;
-
         const dealii::HDF5::Group all_levels = file.create_group("contact");
         for (const ContactLevel &contact : contact_levels)
-          {
-            const dealii::HDF5::Group group =
-              all_levels.create_group("level_" + two_digits(contact.level));
-            write_rows(group, "point", contact.nodes, &Record::point);
-            write_rows(group, "normal", contact.nodes, &Record::normal);
-            write_rows(
-              group, "displacement", contact.nodes, &Record::displacement);
-            write_rows(group, "force", contact.nodes, &Record::force);
-            write_column(group, "gap", contact.nodes, &Record::gap);
-            write_column(group, "measure", contact.nodes, &Record::measure);
-            write_column(group, "state", contact.nodes, &Record::state);
-          }
+          for_each_contact_column<dim>(ColumnWriter<ContactRecord<dim>>(
+            all_levels.create_group("level_" + two_digits(contact.level)),
+            contact.nodes,
+            dim,
+            &contact == &contact_levels.back() ? &description.units : nullptr));
       }
+  }
+
+
+
+  template <int dim>
+  void
+  History<dim>::write_csv(std::ostream &out) const
+  {
+    std::vector<std::string> lines(level_records.size() + 1);
+    for_each_level_column<dim>([&](const std::string &name,
+                                   const std::string & /*label*/,
+                                   const Quantity quantity,
+                                   const auto     member) {
+      const std::string unit   = unit_of(quantity, dim, description.units);
+      const std::string header = unit.empty() ? name : name + " [" + unit + ']';
+      lines[0] += (lines[0].empty() ? "" : ",") + header;
+      for (unsigned int i = 0; i < level_records.size(); ++i)
+        {
+          std::ostringstream value;
+          value << std::setprecision(12) << level_records[i].*member;
+          lines[i + 1] += (lines[i + 1].empty() ? "" : ",") + value.str();
+        }
+    });
+    for (const std::string &line : lines)
+      out << line << '\n';
   }
 
 

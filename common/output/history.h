@@ -8,6 +8,9 @@
 
 #include <boost/serialization/vector.hpp>
 
+#include <common/parameters/parameters.h>
+
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -169,15 +172,38 @@ namespace Friction
     /// Lumped measure of the boundary around the node.
     double measure = 0.;
 
+    /// The largest tangential stress that friction allows here: the
+    /// coefficient of friction times the pressure, or Tresca's bound.
+    double friction_bound = 0.;
+
     /// 0 open, 1 sliding, 2 sticking.
     unsigned int state = 0;
+
+    /// By how much the node has slid along the obstacle: its tangential
+    /// displacement if it is in contact, and zero if it is not.
+    dealii::Tensor<1, dim>
+    slip() const
+    {
+      return state == 0 ? dealii::Tensor<1, dim>()
+                        : displacement - (displacement * normal) * normal;
+    }
 
     template <class Archive>
     void
     serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &dof &point &normal &gap &displacement &force &measure &state;
+      archive &dof &point &normal &gap &displacement &force &measure;
+      archive &friction_bound                               &state;
     }
+  };
+
+  /** What a history says about its run besides the records. */
+  struct RunDescription
+  {
+    std::string           scene;      ///< its name
+    std::string           parameters; ///< the full text
+    std::string           version;    ///< of the program
+    Parameters::UnitNames units = {};
   };
 
   /**
@@ -186,15 +212,24 @@ namespace Friction
    * leaves everything up to its last complete level, and no run leaves a
    * damaged file.
    *
-   * Root attributes: `scene`, `parameters` (the full text), `version`.
-   * Datasets: the members of LevelRecord under `/levels` and those of
-   * CycleRecord under
-   * `/cycles`, each one-dimensional; likewise those of OuterRecord under
-   * `/outer` if Algorithm 2 was used; in `/contact/level_NN` the datasets
-   * `point`, `normal`, `displacement`, `force` (nodes $\times$ dim) and `gap`,
-   * `measure`, `state` (one-dimensional). A level without contact nodes has no
-   * group there, since HDF5 through deal.II has no empty datasets; for the same
-   * reason `/cycles` exists only once there was a cycle.
+   * Root attributes: `scene`, `parameters` (the full text), `version`,
+   * `dimension`. Datasets: the members of LevelRecord under `/levels` and those
+   * of CycleRecord under `/cycles`, each one-dimensional; likewise those of
+   * OuterRecord under `/outer` if Algorithm 2 was used; in `/contact/level_NN`
+   * the datasets `point`, `normal`, `displacement`, `slip`, `force`
+   * (nodes $\times$ dim) and `gap`, `measure`, `friction_bound`, `state`
+   * (one-dimensional). A level without contact nodes has no group there, since
+   * HDF5 through deal.II has no empty datasets; for the same reason `/cycles`
+   * exists only once there was a cycle.
+   *
+   * Each dataset has the attribute `label`, what it is in a few words, and
+   * `units` if it has a unit with a name, see unit_of(). Those of
+   * contact nodes have them on the last level, since each attribute takes as
+   * long to write as a small dataset.
+   *
+   * Beside the file stands `levels.csv`, the table of `/levels` as text, a line
+   * per level. Its first line has the names of the columns, with their units in
+   * brackets.
    *
    * With several processes the first one keeps the records and writes the file;
    * what the others know has to be gathered by the caller.
@@ -206,16 +241,12 @@ namespace Friction
     /**
      * @param file_name  where the file goes, say
      * `run_directory.file("history.h5")`.
-     * @param scene      name of the scene.
-     * @param parameters full text of the parameters of the run.
-     * @param version    version of the program.
+     * @param description  what else is in it.
      * @param communicator  of all processes that call add_level().
      */
-    History(const std::string &file_name,
-            const std::string &scene,
-            const std::string &parameters,
-            const std::string &version,
-            const MPI_Comm     communicator = MPI_COMM_SELF);
+    History(const std::string    &file_name,
+            const RunDescription &description,
+            const MPI_Comm        communicator = MPI_COMM_SELF);
 
     /**
      * Take over the records of a level that is complete, and write the file.
@@ -256,14 +287,14 @@ namespace Friction
 
     void write_hdf5(const std::string &name) const;
 
+    void write_csv(std::ostream &out) const;
+
     /// A lower bound for the size of the file in bytes: that of its numbers.
     std::size_t payload() const;
 
-    std::string file_name;
-    std::string scene;
-    std::string parameters;
-    std::string version;
-    MPI_Comm    communicator;
+    std::string    file_name;
+    RunDescription description;
+    MPI_Comm       communicator;
 
     std::vector<LevelRecord>  level_records;
     std::vector<CycleRecord>  cycle_records;

@@ -19,7 +19,8 @@ namespace Friction
       "(body|contact)" + level + "()" + part + "\\.(pvtu)|" + "(body|contact)" +
       level + "(\\.[0-9]{4,6})" + part + "\\.(vtu)|" + "(body|verify)" + level +
       "()" + part + "\\.(h5)");
-    static const std::regex half_a_history("history\\.part\\.h5");
+    static const std::regex half_a_history(
+      "history\\.part\\.h5|levels\\.part\\.csv");
     static const std::regex a_try("\\.writable-[0-9]+-[0-9]+");
 
     RunFile file;

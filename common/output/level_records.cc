@@ -183,6 +183,9 @@ namespace Friction
           row.displacement[d] = displacement.local_element(dim * node.node + d);
         row.force = contact_force(node, report.residual);
         row.state = !state.in_contact(p) ? 0 : state.sticks(p) ? 2 : 1;
+        row.friction_bound =
+          discretization.problem().effective_coefficient(node) *
+          state.normal_force(p) / node.measure;
         records.own_contact.push_back(row);
 
         const double pressing = -row.force * row.normal;

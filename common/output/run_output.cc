@@ -18,7 +18,7 @@ namespace Friction
   namespace
   {
     // To be increased whenever what is in a checkpoint changes.
-    constexpr unsigned int checkpoint_format = 2;
+    constexpr unsigned int checkpoint_format = 3;
 
 
 
@@ -56,15 +56,15 @@ namespace Friction
                                           : Console::Times::hidden,
                   parameters.output.verbosity == Verbosity::quiet,
                   communicator)
-    , history(directory.file("history.h5"),
-              parameters.name,
-              parameters.text,
-              version,
-              communicator)
+    , history(
+        directory.file("history.h5"),
+        {parameters.name, parameters.text, version, parameters.output.units},
+        communicator)
     , fields(directory,
              scene.materials(),
              scene.contact_boundary_id(),
-             parameters.output.format)
+             parameters.output.format,
+             parameters.output.principal_stresses)
     , verification(directory)
     , checkpoints(directory, communicator)
   {}

@@ -191,10 +191,10 @@ namespace Friction
     data.declare("types", types);
     out << "      </Cells>\n      <PointData>\n";
     for (const VtuPiece::Field &field : piece.point_fields)
-      data.declare(field.name, field.values, field.is_vector ? 3 : 1);
+      data.declare(field.name, field.values, field.n_components);
     out << "      </PointData>\n      <CellData>\n";
     for (const VtuPiece::Field &field : piece.cell_fields)
-      data.declare(field.name, field.values, field.is_vector ? 3 : 1);
+      data.declare(field.name, field.values, field.n_components);
     out << "      </CellData>\n    </Piece>\n  </UnstructuredGrid>\n"
            "  <AppendedData encoding=\"raw\">\n_";
     data.write();
@@ -211,8 +211,7 @@ namespace Friction
     const auto declare = [&](const std::vector<VtuPiece::Field> &fields) {
       for (const VtuPiece::Field &field : fields)
         out << "      <PDataArray "
-            << attributes("Float32", field.name, field.is_vector ? 3 : 1)
-            << "/>\n";
+            << attributes("Float32", field.name, field.n_components) << "/>\n";
     };
 
     begin_file(out, "PUnstructuredGrid");

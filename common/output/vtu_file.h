@@ -24,11 +24,14 @@ namespace Friction
       hexahedron    = 12
     };
 
-    /** One number or three per point or cell. */
+    /**
+     * Numbers of points or of cells: one, the three of a vector, or the six of
+     * a symmetric tensor, in VTK's order XX, YY, ZZ, XY, YZ, XZ.
+     */
     struct Field
     {
       std::string        name;
-      bool               is_vector;
+      unsigned int       n_components;
       std::vector<float> values;
     };
 

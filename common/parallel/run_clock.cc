@@ -1,5 +1,6 @@
 #include <common/parallel/run_clock.h>
 
+#include <initializer_list>
 #include <iomanip>
 #include <numeric>
 #include <sstream>
@@ -107,6 +108,37 @@ namespace Friction
   {
     change_part(present);
     return all_seconds;
+  }
+
+
+
+  std::string
+  RunClock::summary()
+  {
+    const auto  &parts = seconds();
+    const double all   = std::accumulate(parts.begin(), parts.end(), 0.);
+    const auto   sum   = [&](const std::initializer_list<RunPart> some) {
+      double result = 0;
+      for (const RunPart part : some)
+        result += parts[static_cast<unsigned int>(part)];
+      return result;
+    };
+    const double levels   = sum({RunPart::dofs,
+                                 RunPart::contact,
+                                 RunPart::assembly,
+                                 RunPart::levels,
+                                 RunPart::solution}),
+                 mesh     = sum({RunPart::mesh, RunPart::transfer}),
+                 estimate = sum({RunPart::estimate}),
+                 files    = sum({RunPart::records, RunPart::fields});
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(2) << "Time of the run: " << all
+         << " s, of which " << levels
+         << " to set up and solve (the column seconds), " << mesh
+         << " for the mesh, " << estimate << " for error estimates, " << files
+         << " for files, " << all - levels - mesh - estimate - files
+         << " for start and other.";
+    return text.str();
   }
 
 

@@ -60,6 +60,10 @@ namespace Friction
     /** Seconds until now, by part. */
     const std::array<double, n_run_parts> &seconds();
 
+    /** One sentence: the whole time, and what is in the column 'seconds' of the
+     * table of levels, files and the rest of it. */
+    std::string summary();
+
     /** A table of the parts, with the share that each has in the whole. Of this
      * process: where it waits for others is not told. */
     std::string describe();

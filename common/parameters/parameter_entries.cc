@@ -477,6 +477,20 @@ namespace Friction
        "written by all processes together, and body.xdmf; the contact boundary "
        "is small and stays in .vtu files."},
       {"Output",
+       "Principal stresses",
+       "false",
+       flag,
+       "Whether the fields have the principal stresses, the largest first, "
+       "besides the tensor of which they are the eigenvalues."},
+      {"Output",
+       "Units",
+       "",
+       text,
+       "What the units of the scene are called, 'length: mm, force: N' for "
+       "example: labels of the numbers in history.h5, of levels.csv and of "
+       "pictures, from which those of stresses and energies follow. Nothing is "
+       "converted."},
+      {"Output",
        "Checkpoint",
        "false",
        flag,

@@ -538,6 +538,40 @@ namespace Friction
 
 
 
+    // 'length: mm, force: N', each at most once.
+    Parameters::UnitNames
+    read_units(Values &values)
+    {
+      const std::string     path = "Output/Units";
+      Parameters::UnitNames names;
+      for (const std::string &part : split(values.get(path), ','))
+        {
+          const auto        colon = part.find(':');
+          const std::string key   = Utilities::trim(part.substr(0, colon));
+          const std::string name  = colon == part.npos
+             ? ""
+             : Utilities::trim(part.substr(colon + 1));
+          std::string *const target = key == "length" ? &names.length
+            : key == "force"                          ? &names.force
+                                                      : nullptr;
+          if (target == nullptr || name.empty())
+            throw InputError(values.subject(path) + ": '" + excerpt(part) +
+                             "' is not understood; write it like "
+                             "'length: mm, force: N'.");
+          if (!target->empty())
+            throw InputError(values.subject(path) + " names the unit of " +
+                             key + " twice; keep one.");
+          if (name.size() > 20 || printable(name) != name ||
+              name.find_first_of("\"[]") != name.npos)
+            throw InputError(values.subject(path) + ": '" + excerpt(name) +
+                             "' is no name of a unit; take up to 20 letters.");
+          *target = name;
+        }
+      return names;
+    }
+
+
+
     // A coefficient of friction that is not a number is a definition of F. It
     // may use the definitions before the first one that uses it, and comes
     // right after them.
@@ -643,6 +677,7 @@ namespace Friction
       for (const std::string name : {"Marking", "Contact zone"})
         only_with("Refinement/" + name, "Refinement/Strategy", {"adaptive"});
       only_with("Output/Format", "Output/Fields", {"true", "yes"});
+      only_with("Output/Principal stresses", "Output/Fields", {"true", "yes"});
       return warnings;
     }
 
@@ -1016,6 +1051,8 @@ namespace Friction
       output.format =
         (values.get("Output/Format") == "vtu" ? FieldFormat::vtu
                                               : FieldFormat::hdf5);
+      output.principal_stresses = values.flag("Output/Principal stresses");
+      output.units              = read_units(values);
       output.checkpoint   = values.flag("Output/Checkpoint");
       output.verification = values.flag("Output/Verification");
       output.times        = values.flag("Output/Times");

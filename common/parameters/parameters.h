@@ -196,11 +196,20 @@ namespace Friction
       bool               estimate_error      = true;
     };
 
+    /// What the units of the scene are called; empty if they have no names.
+    struct UnitNames
+    {
+      std::string length;
+      std::string force;
+    };
+
     struct Output
     {
       std::string directory;
-      bool        fields       = true;
-      FieldFormat format       = FieldFormat::vtu;
+      bool        fields             = true;
+      FieldFormat format             = FieldFormat::vtu;
+      bool        principal_stresses = false; ///< among the fields
+      UnitNames   units;
       bool        checkpoint   = false; ///< one after each level
       bool        verification = false; ///< write what friction-verify reads
       bool        times        = true;  ///< print what depends on the clock

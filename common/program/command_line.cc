@@ -195,8 +195,13 @@ namespace Friction
             return 0;
           }
         const bool solved = run(parameters, start);
-        if (speaks && parameters.output.profile && parameters.output.times)
-          std::cout << clock.describe() << std::endl;
+        if (speaks && parameters.output.times)
+          {
+            if (parameters.output.verbosity != Verbosity::quiet)
+              std::cout << clock.summary() << std::endl;
+            if (parameters.output.profile)
+              std::cout << clock.describe() << std::endl;
+          }
         return solved ? 0 : 1;
       }
     catch (const InputError &error)

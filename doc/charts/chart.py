@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "figures"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "common" / "plot"))
 from drawing import (BLUE, GREEN, GREY, ORANGE, PINK, RED, SKY,  # noqa: E402
                      plt)
 

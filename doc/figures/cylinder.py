@@ -3,6 +3,7 @@ published numbers that they are compared with."""
 
 import numpy as np
 
+import plot_folder  # noqa: F401
 import vtu
 from history import Run
 

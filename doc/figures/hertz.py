@@ -3,6 +3,7 @@ they are compared with."""
 
 import numpy as np
 
+import plot_folder  # noqa: F401
 from history import Run
 
 YOUNG, POISSON, RADIUS = 1.0, 0.325, 1.0

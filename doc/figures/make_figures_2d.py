@@ -11,6 +11,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import PowerNorm
 from matplotlib.patches import Rectangle
 
+import plot_folder  # noqa: F401
 import vtu
 from drawing import (BLUE, GREEN, GREY, ORANGE, RED, SKY, STRESS, nodal_average,
                      save)

@@ -11,28 +11,13 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize, PowerNorm
 from matplotlib.patches import Patch, Polygon
 
+import plot_folder  # noqa: F401
 import vtu
+from body import View
 from cylinder import THESIS, CylinderRun, angle
-from drawing import (BLUE, GREY, ORANGE, PINK, RED, SKY, STRESS,
+from drawing import (BLUE, GREY, ORANGE, PHASES, PINK, RED, SKY, STRESS,
                      nodal_average, save)
 from history import Run
-
-# Nodes of the contact boundary by phase: open, sliding, sticking.
-PHASES = np.array(["#ededed", ORANGE, BLUE])
-
-
-class View:
-    """A parallel projection. `towards` is the direction of sight, `up` what is
-    up in the picture."""
-
-    def __init__(self, towards, up):
-        self.depth = np.array(towards) / np.linalg.norm(towards)
-        self.right = np.cross(self.depth, up)
-        self.right /= np.linalg.norm(self.right)
-        self.up = np.cross(self.right, self.depth)
-
-    def __call__(self, points):
-        return np.stack([points @ self.right, points @ self.up], axis=-1)
 
 
 def surface(data, length=2.0):

@@ -10,6 +10,7 @@ import h5py
 import numpy as np
 
 import tables
+import plot_folder  # noqa: F401
 import vtu
 from cylinder import THESIS, CylinderRun, angle, largest_angles
 from history import Run

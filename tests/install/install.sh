@@ -1,8 +1,8 @@
 #!/bin/sh
 # What is installed works on its own: a program of thirty lines is built against it
 # in an empty place and solves a scene, and the installed step program says which
-# version it is and solves the same scene with the same result, and the installed
-# program that verifies runs confirms it.
+# version it is and solves the same scene with the same result; the installed programs
+# that verify and draw runs do so, the latter as well with a sweep of its own.
 #
 # Usage: install.sh CMAKE BUILD_TREE PROGRAM_SOURCES CXX_COMPILER VERSION
 cmake=$1
@@ -59,3 +59,15 @@ case $status,$said in
 0,*"is confirmed on 1 level."* | 2,*"has no module"*) ;;
 *) fail "the installed program does not confirm the run" ;;
 esac
+
+said=$("$work/prefix/bin/friction-plot" "$work/run" 2>&1)
+status=$?
+echo "$said" | tail -1 | sed "s|$work/||"
+case $status,$said in
+0,*) [ -s "$work/run/picture.png" ] || fail "there is no picture" ;;
+2,*"has no module"*) exit 0 ;;
+*) fail "the installed program does not draw the run" ;;
+esac
+(cd "$work" && "$work/prefix/bin/friction-plot" sweep "$scene" Refinement/Levels=0 \
+  "Refinement/Initial refinements=3" Output/Fields=false \
+  --set "Contact/Friction coefficient" 0.1 0.5) || fail "there is no sweep"

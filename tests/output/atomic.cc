@@ -105,7 +105,7 @@ main(int argc, char **argv)
   list_files(directory);
 
   std::cout << "a history that does not fit" << std::endl;
-  History<2> history(directory.file("history.h5"), "hertz", "", "0");
+  History<2> history(directory.file("history.h5"), {"hertz", "", "0"});
   try_to([&]() { history.add_level(LevelRecord(), {}, {}); });
   list_files(directory);
   limit_file_size(RLIM_INFINITY);

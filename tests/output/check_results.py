@@ -11,7 +11,7 @@ import sys
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "doc" / "figures"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "common" / "plot"))
 try:
     import h5py
     import numpy as np
@@ -38,6 +38,23 @@ def check_datasets(name):
     with h5py.File(name) as file:
         file.visititems(visit)
     assert count > 0, f"{name} is empty"
+
+
+def check_table(name):
+    """It is that of history.h5; after a run that was killed in between, without the
+    last level."""
+    lines = name.read_text().splitlines()
+    columns = [column.split(" [")[0] for column in lines[0].split(",")]
+    with h5py.File(directory / "history.h5") as file:
+        levels = {key: data[()] for key, data in file["levels"].items()}
+    assert sorted(columns) == sorted(levels), f"{name}: {columns}"
+    rows = [[float(value) for value in line.split(",")] for line in lines[1:]]
+    n_levels = len(levels["level"])
+    assert len(rows) in ((n_levels - 1, n_levels) if unfinished else (n_levels,)), \
+        f"{name}: {len(rows)} rows"
+    for column, values in zip(columns, np.transpose(rows)):
+        assert np.allclose(values, levels[column][:len(rows)], rtol=1e-10,
+                           atol=0), f"{name}: {column}"
 
 
 def check_description(name):
@@ -110,6 +127,8 @@ def main():
     for path in files:
         if path.suffix == ".h5":
             check_datasets(path)
+        elif path.suffix == ".csv":
+            check_table(path)
         elif path.suffix == ".xdmf":
             check_description(path)
         elif path.suffix == ".pvtu":

@@ -1,8 +1,12 @@
-// The table on the console, without what depends on the clock.
+// The table on the console, without what depends on the clock; and that a file
+// gets a sign of life in long levels, and none in short ones.
 
 #include <common/output/console.h>
 
+#include <chrono>
 #include <iostream>
+#include <sstream>
+#include <thread>
 
 using namespace Friction;
 
@@ -41,4 +45,31 @@ main(int argc, char *argv[])
   Console silent(std::cout, Console::Times::shown, true);
   silent.level_complete(LevelRecord());
   silent.note("nobody reads this");
+
+  // Rows come within a second each, and then none for more than five.
+  std::ostringstream file;
+  Console            followed(file, Console::Times::shown);
+  const auto         wait = [&](const unsigned int tenths) {
+    for (unsigned int i = 1; i <= tenths; ++i)
+      {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        followed.progress(2, i, 1e-3);
+      }
+  };
+  wait(8);
+  followed.level_complete(LevelRecord());
+  wait(8);
+  followed.level_complete(LevelRecord());
+  const bool none_in_short_levels =
+    file.str().find("cycle 8") == std::string::npos;
+  wait(55);
+  const std::string text = file.str();
+  std::cout << "progress in a file: short levels "
+            << (none_in_short_levels ? "none" : "some") << ", a long one "
+            << (text.find("  level 2: cycle ") != text.npos &&
+                    text.find(", increment 1.0e-03, after ") != text.npos &&
+                    text.back() == '\n'
+                  ? "some"
+                  : "none")
+            << std::endl;
 }

@@ -197,7 +197,8 @@ namespace
                      [&]() { std::filesystem::remove_all(name); });
     const RunDirectory directory(name, MPI_COMM_WORLD);
     const Material     material(2.5, .25, kind);
-    FieldWriter<dim>   writer(directory, material, 2);
+    FieldWriter<dim>   writer(
+      directory, material, 2, FieldFormat::vtu, /*principal_stresses=*/true);
 
     Triangulation<dim> coarse;
     GridGenerator::subdivided_hyper_cube(coarse, 2);
@@ -250,8 +251,14 @@ namespace
       read_array<std::int32_t>(file, "type=\"Int32\" Name=\"connectivity\"");
     const std::vector<float> displacement = field("displacement"),
                              error        = field("estimated_error"),
-                             mises        = field("von_Mises_stress");
-    const char axes[]                     = "xyz";
+                             mises        = field("von_Mises_stress"),
+                             tensor       = field("stress");
+    const std::array<std::vector<float>, 3> principal = {
+      {field("principal_stress_1"),
+       field("principal_stress_2"),
+       field("principal_stress_3")}};
+    // Of the symmetric tensor, in VTK's order.
+    const unsigned int component[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
 
     // deal.II counts corners row by row, VTK goes around.
     const std::array<unsigned int, 8> order = {{0, 1, 3, 2, 4, 5, 7, 6}};
@@ -264,7 +271,7 @@ namespace
     std::set<unsigned int> vertices;
     unsigned int           n_cells = 0;
     double of_points = 0., of_displacements = 0., of_errors = 0.,
-           of_stresses = 0.;
+           of_stresses = 0., of_principal = 0.;
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
         {
@@ -311,12 +318,27 @@ namespace
                                     : 0.);
           for (unsigned int i = 0; i < 3; ++i)
             for (unsigned int j = i; j < 3; ++j)
-              if (j < dim || i == j)
-                of_stresses = std::max(
-                  of_stresses,
-                  std::abs(field(std::string("stress_") + axes[i] + axes[j])
-                             .at(n_cells) -
-                           s[i][j]));
+              of_stresses = std::max(
+                of_stresses,
+                std::abs(tensor.at(6 * n_cells + component[i][j]) - s[i][j]));
+          // Principal stresses are the zeros of det(s - p), from the largest to
+          // the smallest, and there are no others.
+          double sum = 0.;
+          for (unsigned int k = 0; k < 3; ++k)
+            {
+              const double p = principal[k].at(n_cells);
+              Tensor<2, 3> shifted;
+              for (unsigned int i = 0; i < 3; ++i)
+                for (unsigned int j = 0; j < 3; ++j)
+                  shifted[i][j] = s[i][j] - (i == j ? p : 0.);
+              of_principal =
+                std::max(of_principal, std::abs(determinant(shifted)));
+              if (k > 0 && p > principal[k - 1].at(n_cells))
+                of_principal = 1.;
+              sum += p;
+            }
+          of_principal =
+            std::max(of_principal, std::abs(sum - s[0][0] - s[1][1] - s[2][2]));
           const double squared_mises =
             .5 * (s[0][0] - s[1][1]) * (s[0][0] - s[1][1]) +
             .5 * (s[1][1] - s[2][2]) * (s[1][1] - s[2][2]) +
@@ -342,6 +364,7 @@ namespace
                             where + "places and displacements of corners");
     Tests::check_everywhere(of_stresses < 1e-5,
                             where + "stresses in the middles of cells");
+    Tests::check_everywhere(of_principal < 1e-4, where + "principal stresses");
     Tests::check_everywhere(of_errors == 0., where + "errors of cells");
   }
 

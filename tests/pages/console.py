@@ -12,6 +12,8 @@ GAP = "..."
 PROGRESS = re.compile(r" *level \d+: cycle \d+, increment ")
 # What a run ends with; a page need not show it.
 QUANTITIES = re.compile(r"Peak pressure p = ")
+# Nor can it show how long the run took.
+TIME = re.compile(r"Time of the run: ")
 
 
 class Comparison:
@@ -21,7 +23,8 @@ class Comparison:
     def __init__(self, shown, printed, shortened):
         self.shown = [(number, line) for number, line in shown if line.strip()]
         self.printed = [line for line in printed.splitlines()
-                        if line.strip() and not PROGRESS.match(line)]
+                        if line.strip() and not PROGRESS.match(line)
+                        and not TIME.match(line)]
         if not any(QUANTITIES.match(line) for _, line in self.shown):
             self.printed = [line for line in self.printed
                             if not QUANTITIES.match(line)]

@@ -10,9 +10,10 @@ from prose_page import Page
 
 ENTRY = re.compile(r"([A-Z][a-z]+(?: [a-z]+)*)/([A-Z][^=/]*?)\s*(?:=\s*(.*))?$")
 # Endings of files that runs leave behind; such names must occur in sources.
-PRODUCTS = {".h5", ".pvd", ".vtu", ".pvtu", ".xdmf", ".html"}
+PRODUCTS = {".h5", ".csv", ".pvd", ".vtu", ".pvtu", ".xdmf", ".html"}
 COMMANDS = {"cmake", "ctest", "mpirun", "apt-get", "python3", "gmsh", "pvpython",
-            "paraview", "bash", "sh", "step-friction-2d", "step-friction-3d"}
+            "paraview", "bash", "sh", "step-friction-2d", "step-friction-3d",
+            "friction-plot"}
 CMAKE_OPTIONS = {"build", "preset", "target", "parallel", "install", "prefix"}
 # A symbol of a formula that is written as code: a letter and a short index.
 SYMBOL = re.compile(r"(?:[A-Za-z]|phi|sum)_[a-z]{1,2}$")

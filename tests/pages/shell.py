@@ -15,10 +15,11 @@ from check_prose import commands_of
 # run here. In a block it stands for nothing.
 NOT_RUN = {"apt-get", "cmake", "ctest", "paraview"}
 RUN = {"mpirun", "python3", "gmsh", "pvpython", "cd", "cp", "mkdir", "ls", "cat",
-       "sed", "grep", "head", "tail", "diff", "mv", "rm", "echo", "test"}
+       "sed", "grep", "cut", "head", "tail", "diff", "mv", "rm", "echo", "test"}
 # A page goes on without these, as a reader would.
 OPTIONAL = {"gmsh", "pvpython", "xvfb-run"}
 STEPS = {"step-friction-2d", "step-friction-3d"}
+PROGRAMS = STEPS | {"friction-plot"}
 # Studies that take long, and the tests that run them in a quick form. Any other
 # target must be the '--target' of a test.
 LONG_STUDIES = {
@@ -67,12 +68,17 @@ class Scratch:
         path.chmod(0o755)
 
     def install_programs(self, entries):
-        """The step programs, with entries that shorten whatever they run."""
+        """The step programs, with entries that shorten whatever they run, and what
+        draws their results."""
         for kind in ("release", "debug"):
             folder = self.root / "build" / kind / "bin"
             folder.mkdir(parents=True, exist_ok=True)
             for name, program in self.programs.items():
                 self._write_script(folder / name, [program], entries)
+            plot = self.root / "common" / "plot" / "friction_plot.py"
+            self._write_script(folder / "friction-plot", [
+                "env", f"FRICTION_PROGRAMS={folder}", str(self._tools / "python3"), "-B",
+                str(plot)])
 
     def run(self, block):
         """Status and output of a block, as one would see it."""
@@ -119,7 +125,7 @@ def problem_of_command(command, build):
     """Whether the test knows what to do with a command."""
     program = program_of(command)
     name = Path(program).name
-    if name in STEPS:
+    if name in PROGRAMS:
         folder = str(Path(program).parent)
         return None if folder in ("build/release/bin", "build/debug/bin") else (
             f"'{program}' is not found from the repository's root; write "

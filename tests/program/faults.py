@@ -426,8 +426,8 @@ class Faults:
             demand(sorted(found) == sorted(wanted),
                    f"not the same files: {sorted(set(found) ^ set(wanted))}")
             for name in found:
-                # The history has the time that things took, lists that of the day.
-                if not name.endswith((".h5", ".pvd", ".pvtu")):
+                # Histories have the time that things took, lists that of the day.
+                if not name.endswith((".h5", ".csv", ".pvd", ".pvtu")):
                     demand(found[name] == wanted[name], f"{name} is another one")
             for name in ("body.pvd", "body.xdmf", "contact.pvd"):
                 if name in found:

@@ -196,4 +196,11 @@ main()
   check("no normal", good, {"Obstacle/Normal=0, 0"});
   check("conditions", good, {"Boundary conditions/Displacement=0, 0"});
   check("directory", good, {"Output/Directory="});
+  check("units", good, {"Output/Units=length: mm, force: N"});
+  check("one unit", good, {"Output/Units=force: kN"});
+  check("units", good, {"Output/Units=mm, N"});
+  check("units", good, {"Output/Units=length: mm, time: s"});
+  check("units", good, {"Output/Units=length: mm, length: m"});
+  check("units", good, {"Output/Units=length: \"mm\""});
+  check("units", good, {"Output/Units=length:"});
 }

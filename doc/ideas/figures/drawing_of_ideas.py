@@ -6,7 +6,8 @@ import sys
 from pathlib import Path
 
 DOC = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(DOC / "charts"), str(DOC / "figures")]
+sys.path[:0] = [str(DOC / "charts"), str(DOC / "figures"),
+                str(DOC.parent / "common" / "plot")]
 import chart  # noqa: E402
 from history import Run  # noqa: E402
 

@@ -28,9 +28,9 @@ def split(file_name):
 
 
 def read(file_name):
-    """All arrays of a file by name, vectors as rows: of points, the displacement
-    for example, or of cells, like stresses. The points themselves are called
-    'points', the cells are the rows of 'cells', corners in cyclic order."""
+    """All arrays of a file by name, vectors and tensors as rows: of points, the
+    displacement for example, or of cells, like stresses. The points themselves are
+    called 'points', the cells are the rows of 'cells', corners in cyclic order."""
     text, data = split(file_name)
     order = ORDERS[attributes_of(re.search("<VTKFile[^>]*>", text)[0])["byte_order"]]
     arrays = {}
@@ -56,3 +56,10 @@ def fields_of(file_name, kind):
     inside = re.search(f"<{kind}>(.*?)</{kind}>", text, re.DOTALL)[1]
     return [attributes_of(tag)["Name"]
             for tag in re.findall(r"<DataArray[^>]*/>", inside)]
+
+
+def pieces_of(record_name):
+    """The files that a .pvtu lists."""
+    path = Path(record_name)
+    return [path.parent / attributes_of(tag)["Source"]
+            for tag in re.findall(r"<Piece [^>]*/>", path.read_text())]
