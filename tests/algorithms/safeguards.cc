@@ -5,16 +5,16 @@
 // solutions where the first attempt fails, says what it did, and says so if it
 // failed.
 
-#include <common/algorithms/nested_iteration.h>
 #include <common/algorithms/mixed_fixed_point.h>
+#include <common/algorithms/nested_iteration.h>
 #include <common/algorithms/safeguarded_solver.h>
 
 #include <iostream>
 
 #include <tests/support/check.h>
 
-#include <tests/support/discretized.h>
 #include "../support/random_problem.h"
+#include <tests/support/discretized.h>
 
 using namespace Tests;
 
@@ -83,17 +83,18 @@ namespace
 
 
 
+  template <int dim>
   SolverReport
   solve(const Parameters &parameters, VectorType &u, ContactState &state)
   {
-    const Scene<2> scene(parameters);
-    const auto     mesh = make_triangulation<2>();
+    const Scene<dim> scene(parameters);
+    const auto       mesh = make_triangulation<dim>();
     scene.make_coarse_mesh(*mesh);
     mesh->refine_global(parameters.refinement.initial_refinements);
-    const Discretized<2> d(scene, *mesh);
+    const Discretized<dim> d(scene, *mesh);
     u     = admissible_start(d);
     state = ContactState(d.contact().size(), d.problem().has_friction());
-    ContactSolver<2> solver(d, parameters.solver);
+    ContactSolver<dim> solver(d, parameters.solver);
     return solver.solve(u, state);
   }
 
@@ -109,21 +110,22 @@ namespace
 
 
 
-  // Cells a hundred times longer than wide.
+  // Cells that are a hundred times shorter in two directions than in the third:
+  // there lines are of no help.
   void
   test_long_cells(const FrictionLaw law)
   {
     std::cout << "Long cells, " << (law == FrictionLaw::none ? "no " : "")
               << "friction" << std::endl;
-    Parameters p                     = block_parameters<2>(law, .4);
-    p.scene.size                     = {100., 1.};
-    p.scene.subdivisions             = {1, 1};
+    Parameters p                     = block_parameters<3>(law, .4);
+    p.scene.size                     = {100., 1., 1.};
+    p.scene.subdivisions             = {1, 1, 1};
     p.scene.distortion               = 0.;
     p.solver.maximum_cycles          = 60;
-    p.refinement.initial_refinements = 5;
+    p.refinement.initial_refinements = 3;
     VectorType         u, v;
     ContactState       state(0, false), other(0, false);
-    const SolverReport report = solve(p, u, state);
+    const SolverReport report = solve<3>(p, u, state);
     check(report.converged, "it is solved");
     std::cout << report.attempts.size() << " attempts, the last one: "
               << (report.attempts.empty() ? "" : report.attempts.back().name)
@@ -134,7 +136,7 @@ namespace
     p.solver.safeguards       = false;
     p.solver.maximum_cycles   = 5000;
     p.solver.recombined_steps = 20;
-    check(solve(p, v, other).converged, "so it is by patience");
+    check(solve<3>(p, v, other).converged, "so it is by patience");
     check_below(distance(u, v), 1e-6, "displacements agree");
   }
 
@@ -145,7 +147,7 @@ namespace
   test_much_friction()
   {
     std::cout << "Much friction" << std::endl;
-    NestedIteration<2>       nest(read_parameters(
+    NestedIteration<2> nest(read_parameters(
       SCENES_DIR "/raous.prm", {"Contact/Friction coefficient=10"}));
     nest.begin();
     unsigned int failures = 0, solved = 0;
@@ -155,9 +157,8 @@ namespace
         VectorType   u;
         ContactState state(0, false);
         failures +=
-          !nest.solve_with(without_safeguards(nest.parameters().solver),
-                           u,
-                           state)
+          !nest
+             .solve_with(without_safeguards(nest.parameters().solver), u, state)
              .converged;
         solved += nest.solve().converged;
         if (!nest.report().attempts.empty())
@@ -182,7 +183,7 @@ namespace
     p.refinement.initial_refinements = 3;
     VectorType         u;
     ContactState       state(0, false);
-    const SolverReport report = solve(p, u, state);
+    const SolverReport report = solve<2>(p, u, state);
     check(!report.converged, "it is not solved");
     for (const SolverAttempt &attempt : report.attempts)
       std::cout << attempt.name << std::endl;
