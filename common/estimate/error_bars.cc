@@ -56,7 +56,9 @@ namespace Friction
           return unknown_error;
         const double spread =
           largest > 0 ? largest / std::max(smallest, 1e-3 * largest) : 1.;
-        if (order == 1 || spread < smallest_spread)
+        // With values that are hardly any, both orders have the largest spread,
+        // up to rounding, which must not decide.
+        if (order == 1 || spread < .999 * smallest_spread)
           {
             smallest_spread = spread;
             error           = largest * size(values.size() - 1);
