@@ -26,7 +26,7 @@ namespace Friction
    * strengths, which are the weights of Laplace's operator for a material that
    * is the same everywhere, a node may be in a line if its two strongest
    * couplings have four fifths of its diagonal together. With squares they have
-   * a quarter, with rectangles 4/5 from an aspect ratio of 2.7 on, and all of
+   * a quarter, with rectangles 4/5 from an aspect ratio of 2.6 on, and all of
    * it if cells are infinitely long. Lines connect nodes of which each is one
    * of the two strongest partners of the other, and those of less than three
    * nodes are dropped.
