@@ -8,6 +8,7 @@
 
 #include <boost/serialization/vector.hpp>
 
+#include <common/contact/force_balance.h>
 #include <common/parameters/parameters.h>
 
 #include <iosfwd>
@@ -18,8 +19,9 @@ namespace Friction
 {
   /**
    * What is kept of one level of the nested iteration: one value in each
-   * dataset under `/levels`. Forces are those of the whole contact boundary, in
-   * the units of the scene (2D: per unit of thickness).
+   * dataset under `/levels`. Forces are those of the whole contact boundary, of
+   * all its parts if there are several, in the units of the scene (2D: per unit
+   * of thickness); and so are zones.
    */
   struct LevelRecord
   {
@@ -182,6 +184,9 @@ namespace Friction
     /// 0 open, 1 sliding, 2 sticking.
     unsigned int state = 0;
 
+    /// Of the section that is about it: 1 for 'Contact', 2 for 'Contact 2'.
+    unsigned int section = 1;
+
     /// By how much the node has slid along the obstacle: its tangential
     /// displacement if it is in contact, and zero if it is not.
     dealii::Tensor<1, dim>
@@ -196,7 +201,25 @@ namespace Friction
     serialize(Archive &archive, const unsigned int /*version*/)
     {
       archive &dof &point &normal &gap &displacement &force &measure;
-      archive &friction_bound                               &state;
+      archive &friction_bound &state                        &section;
+    }
+  };
+
+  /**
+   * What is kept of one level if the scene wants to know the forces on the
+   * body: one row in each dataset under `/forces`.
+   */
+  template <int dim>
+  struct ForceRecord
+  {
+    unsigned int      level = 0;
+    ForceBalance<dim> balance;
+
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &level &balance;
     }
   };
 
@@ -207,6 +230,8 @@ namespace Friction
     std::string           parameters; ///< the full text
     std::string           version;    ///< of the program
     Parameters::UnitNames units = {};
+
+    unsigned int n_contact_boundaries = 1;
   };
 
   /**
@@ -221,9 +246,15 @@ namespace Friction
    * OuterRecord under `/outer` if Algorithm 2 was used; in `/contact/level_NN`
    * the datasets `point`, `normal`, `displacement`, `slip`, `force`
    * (nodes $\times$ dim) and `gap`, `measure`, `friction_bound`, `state`
-   * (one-dimensional). A level without contact nodes has no group there, since
-   * HDF5 through deal.II has no empty datasets; for the same reason `/cycles`
-   * exists only once there was a cycle.
+   * (one-dimensional), and `section` if there are several contact boundaries, 2
+   * for nodes of 'Contact 2'. A level without contact nodes has no group there,
+   * since HDF5 through deal.II has no empty datasets; for the same reason
+   * `/cycles` exists only once there was a cycle.
+   *
+   * With `Output/Forces` there are under `/forces` `level`, a dataset for each
+   * of the forces on the body under its name (levels $\times$ dim), those of
+   * obstacles with `_normal` (one-dimensional) and `_tangential` besides, see
+   * ForceOnBody; and of all of them `sum` and `imbalance`.
    *
    * Each dataset has the attribute `label`, what it is in a few words, and
    * `units` if it has a unit with a name, see unit_of(). Those of
@@ -254,13 +285,15 @@ namespace Friction
     /**
      * Take over the records of a level that is complete, and write the file.
      * The levels are expected in the order in which they are computed; the
-     * cycles carry their own level. A collective operation, an error of the
-     * first process is that of all; its records are the ones that count.
+     * cycles carry their own level. Of the forces there is one record, or none.
+     * A collective operation, an error of the first process is that of all; its
+     * records are the ones that count.
      */
     void add_level(const LevelRecord                     &level,
                    const std::vector<CycleRecord>        &cycles,
                    const std::vector<ContactRecord<dim>> &contact,
-                   const std::vector<OuterRecord>        &outer = {});
+                   const std::vector<OuterRecord>        &outer  = {},
+                   const std::vector<ForceRecord<dim>>   &forces = {});
 
     const std::vector<LevelRecord> &levels() const;
 
@@ -270,6 +303,7 @@ namespace Friction
     serialize(Archive &archive, const unsigned int /*version*/)
     {
       archive &level_records &cycle_records &outer_records &contact_levels;
+      archive                                              &force_records;
     }
 
   private:
@@ -303,6 +337,8 @@ namespace Friction
     std::vector<CycleRecord>  cycle_records;
     std::vector<OuterRecord>  outer_records;
     std::vector<ContactLevel> contact_levels;
+
+    std::vector<ForceRecord<dim>> force_records;
   };
 } // namespace Friction
 

@@ -210,6 +210,7 @@ namespace Friction
       FieldFormat format             = FieldFormat::vtu;
       bool        principal_stresses = false; ///< among the fields
       UnitNames   units;
+      bool        forces       = false; ///< print and record those on the body
       bool        checkpoint   = false; ///< one after each level
       bool        verification = false; ///< write what friction-verify reads
       bool        times        = true;  ///< print what depends on the clock
@@ -223,6 +224,15 @@ namespace Friction
     {
       std::string key;
       Material    material;
+    };
+
+    /// One more part of the boundary that may touch something: sections
+    /// 'Contact 2' and 'Obstacle 2', and so on.
+    struct FurtherContact
+    {
+      unsigned int number = 2;
+      Obstacle     obstacle;
+      Contact      contact;
     };
 
     /// What is strange about the scene but no error: entries that it does not
@@ -242,6 +252,10 @@ namespace Friction
     Obstacle           obstacle;
     BoundaryConditions boundary_conditions;
     Contact            contact;
+
+    /// Sorted by number; none in most scenes.
+    std::vector<FurtherContact> further_contacts;
+
     Refinement         refinement;
     SolverSettings     solver;
     Output             output;

@@ -4,6 +4,7 @@ history.h5 by name, under 'contact' those of the contact nodes."""
 
 import numpy as np
 
+from nodal_forces import nodal_loads
 from recomputed import Recomputed
 from scene_check import compare_with_scene
 from verdict import ROUNDING, Verdict, relative
@@ -24,6 +25,7 @@ def verify_level(level, reported, scene, tolerance):
     check_certificate(verdict, found, reported, tolerance)
     check_reported_numbers(verdict, found, reported, tolerance)
     check_reported_nodes(verdict, found, reported, tolerance)
+    check_reported_forces(verdict, found, reported, tolerance)
     return verdict, compare_with_scene(verdict, level, scene, found.hanging, exact)
 
 
@@ -84,22 +86,29 @@ def check_normals(verdict, found, exact):
     verdict.demand(set(nodes) <= set(boundary.nodes) and len(set(nodes)) == len(nodes)
                    and not np.any(found.is_hanging[nodes]),
                    "a contact node is none of the contact boundary")
+    verdict.demand(np.array_equal(boundary.section[nodes], level.contact_sections),
+                   "a contact node is said to be on another boundary")
     verdict.demand(np.all(np.isfinite(found.gap)),
                    "a contact node cannot meet the obstacle")
     verdict.check("given", np.abs(np.linalg.norm(normals, axis=1) - 1), exact,
                   "a normal is no unit vector", found.x)
-    if level.contact_normal == "obstacle":
-        _, towards = level.obstacle.nearest(found.x, boundary.normal[nodes])
-        # Where a node is held in some directions, in those that are left.
-        towards = np.where(level.is_prescribed[nodes], 0, towards)
-        towards /= np.maximum(np.linalg.norm(towards, axis=1), 1e-300)[:, None]
-        verdict.check("given", np.abs(normals - towards).max(axis=1, initial=0), exact,
-                      "a normal does not point straight to the obstacle", found.x)
-    else:
-        cosines = np.clip(np.sum(normals * boundary.normal[nodes], axis=1), -1, 1)
-        turns = np.array([boundary.turn.get(node, 0) for node in nodes])
-        verdict.demand(np.all(np.degrees(np.arccos(cosines)) <= turns + 1),
-                       "a normal points away from those of the faces around its node")
+    for contact in level.contacts:
+        own = level.of_contact(contact)
+        if contact.contact_normal == "obstacle":
+            _, towards = contact.obstacle.nearest(found.x[own],
+                                                  boundary.normal[nodes[own]])
+            # Where a node is held in some directions, in those that are left.
+            towards = np.where(level.is_prescribed[nodes[own]], 0, towards)
+            towards /= np.maximum(np.linalg.norm(towards, axis=1), 1e-300)[:, None]
+            verdict.check("given", np.abs(normals[own] - towards).max(axis=1, initial=0),
+                          exact, "a normal does not point straight to the obstacle",
+                          found.x[own])
+        else:
+            cosines = np.clip(np.sum(normals * boundary.normal[nodes], axis=1), -1, 1)
+            turns = np.array([boundary.turn.get(node, 0) for node in nodes])
+            verdict.demand(
+                np.all((np.degrees(np.arccos(cosines)) <= turns + 1)[own]),
+                "a normal points away from those of the faces around its node")
 
 
 # The law.
@@ -144,9 +153,8 @@ def wrong_slip(found):
 def wrong_states(found):
     """What is not as nodes are said to be, by name."""
     state, unit = found.level.contact_states, found.contact_unit
-    rubs = found.can_slide & (found.level.friction_law != "none")
-    if found.level.friction_law == "Coulomb":
-        rubs &= state > 0
+    rubs = found.can_slide & (found.law != "none")
+    rubs &= (state > 0) | (found.law != "Coulomb")
     # A prescribed component of the slip leaves but a share of the bound to the others.
     share = np.where(found.slip > 0, np.linalg.norm(found.direction, axis=1), 1)
     missing = np.maximum(found.bound * share - found.drag, 0)
@@ -170,12 +178,13 @@ def check_contact(verdict, found, tolerance):
     level, x = found.level, found.x
     verdict.check("penetration", depth(found), tolerance,
                   "a node is inside of the obstacle", x)
-    others = left_out(found)
-    places = level.vertices[others]
-    depths = level.obstacle.depth(places + found.u[others])
     per_length = np.max(found.stiffness_n * found.zone / found.contact_unit, initial=0)
-    verdict.check("penetration", depths * per_length, tolerance,
-                  "a node that is left out is inside of the obstacle", places)
+    for contact in level.contacts:
+        others = left_out(found) & (found.boundary.section == contact.number)
+        places = level.vertices[others]
+        depths = contact.obstacle.depth(places + found.u[others])
+        verdict.check("penetration", depths * per_length, tolerance,
+                      "a node that is left out is inside of the obstacle", places)
     verdict.check("tension", pulling(found), tolerance, "the obstacle pulls", x)
     verdict.check("tension", at_distance(found), tolerance,
                   "the obstacle pushes from a distance", x)
@@ -194,7 +203,8 @@ def check_states(verdict, found, tolerance):
     x, state = found.x, found.level.contact_states
     verdict.demand(np.all(np.isin(state, (0, 1, 2))), "a contact node has no known state",
                    "states")
-    verdict.demand(found.level.friction_law != "none" or not np.any(state == 2),
+    verdict.demand(any(contact.friction_law != "none" for contact in
+                       found.level.contacts) or not np.any(state == 2),
                    "a node is said to stick, and there is no friction", "states")
     wrong = wrong_states(found)
     for name, sentence in (
@@ -254,6 +264,60 @@ def check_reported_numbers(verdict, found, reported, tolerance):
         verdict.check(None, relative(number, reported[name], least), tolerance,
                       f"{name} is reported to be {reported[name]:.6g} and is "
                       f"{number:.6g}")
+
+
+def check_reported_forces(verdict, found, reported, tolerance):
+    """The forces on the body, if they are there: those of the obstacle, reactions as
+    far as a boundary does not share nodes with another one that is held, loads, and
+    their sum, which the residual alone must give."""
+    level, forces = found.level, reported.get("forces", {})
+    if not forces:
+        return
+    normals = level.contact_normals
+    contact, mine = -found.pressing[:, None] * normals - found.r_T, {}
+    for part in level.contacts:
+        own, name = level.of_contact(part), "contact"
+        name += "" if part.number == 1 else f"_{part.number}"
+        if part.contact_boundary >= 0:
+            mine.update({name: contact[own].sum(axis=0),
+                         name + "_normal": found.pressing[own].sum(),
+                         name + "_tangential": -found.r_T[own].sum(axis=0)})
+    others = -found.r.copy()
+    others[level.contact_nodes] -= contact
+    others[~level.is_prescribed] = 0
+    held = {int(name[len("held_"):]): np.unique(
+        level.boundary_faces[level.boundary_ids == int(name[len("held_"):])])
+        for name in forces if name.startswith("held_")}
+    reactions = sum((forces[name] for name in forces
+                     if name.startswith("held_") or name == "pinned"),
+                    np.zeros(level.dim))
+    mine["all reactions"] = others.sum(axis=0)
+    forces = dict(forces, **{"all reactions": reactions})
+    for boundary, nodes in held.items():
+        shared = [n for b, n in held.items() if b != boundary] + [np.zeros(0, int)]
+        if "pinned" not in forces and not np.intersect1d(nodes,
+                                                         np.hstack(shared)).size:
+            mine[f"held_{boundary}"] = others[nodes].sum(axis=0)
+    if level.body_force is not None:
+        mine["body_force"] = nodal_loads(level, level.body_force,
+                                         level.traction_faces[:0], None).sum(axis=0)
+    tractions = sum((forces[name] for name in forces if name.startswith("traction_")),
+                    np.zeros(level.dim))
+    forces["all tractions"] = tractions
+    mine["all tractions"] = nodal_loads(level, None, level.traction_faces,
+                                        level.tractions).sum(axis=0)
+    largest = max(np.abs(value).max() for value in mine.values())
+    for name, value in mine.items():
+        theirs = forces.get(name)
+        verdict.demand(theirs is not None, f"history.h5 has no force '{name}'")
+        if theirs is not None:
+            verdict.check(None, np.abs(theirs - value).max() / (largest or 1.), tolerance,
+                          f"the force '{name}' is reported to be {theirs} and is {value}")
+    total = contact.sum(axis=0) + sum(
+        (mine[name] for name in ("all reactions", "all tractions", "body_force")
+         if name in mine), np.zeros(level.dim))
+    verdict.check(None, np.linalg.norm(total) / (largest or 1.), tolerance,
+                  "the forces on the body do not balance")
 
 
 def check_reported_nodes(verdict, found, reported, tolerance):

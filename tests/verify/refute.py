@@ -34,6 +34,7 @@ RUNS = {
     "wheel": (2, ["Refinement/Levels=3"]),
     "pin": (2, ["Refinement/Levels=2"]),
     "rough": (2, ["Refinement/Levels=1"]),
+    "wall": (2, ["Refinement/Levels=3"]),
     "crossing-rods": (3, ["Refinement/Maximum dofs=1500"]),
     "half-ball": (3, ["Refinement/Maximum dofs=300"]),
 }
@@ -134,10 +135,11 @@ def set_state(old, new, tight=False):
 
 def move_obstacle(distance):
     def change(level, _):
-        obstacle = level.obstacle
-        obstacle.planes = [(p + distance * n, n) for p, n in obstacle.planes]
-        obstacle.rods = [(c, a, r - side * distance, length, side)
-                         for c, a, r, length, side in obstacle.rods]
+        for contact in level.contacts:
+            obstacle = contact.obstacle
+            obstacle.planes = [(p + distance * n, n) for p, n in obstacle.planes]
+            obstacle.rods = [(c, a, r - side * distance, length, side)
+                             for c, a, r, length, side in obstacle.rods]
     return change
 
 
@@ -165,11 +167,41 @@ def remove_contact_node(level, _):
     """One that touches."""
     keep = np.ones(len(level.contact_nodes), bool)
     keep[np.flatnonzero(level.contact_states > 0)[0]] = False
-    for name in ("contact_nodes", "contact_normals", "contact_states",
+    for name in ("contact_nodes", "contact_normals", "contact_states", "contact_sections",
                  "friction_bounds", "friction_coefficient"):
         # One that does not vary is a number.
         if np.ndim(getattr(level, name)) > 0:
             setattr(level, name, getattr(level, name)[keep])
+
+
+def change_further(name, factor):
+    """Of the second contact boundary."""
+    def change(level, _):
+        contact = level.contacts[1]
+        setattr(contact, name, getattr(contact, name) * factor)
+    return change
+
+
+def move_further(distance):
+    def change(level, _):
+        obstacle = level.contacts[1].obstacle
+        obstacle.planes = [(p + distance * n, n) for p, n in obstacle.planes]
+    return change
+
+
+def swap_sections(level, _):
+    level.contact_sections[:] = 3 - level.contact_sections
+
+
+def swap_one_section(level, _):
+    level.contact_sections[0] = 3 - level.contact_sections[0]
+
+
+def report_force(name, factor):
+    def change(_, row):
+        row["forces"] = dict(row["forces"])
+        row["forces"][name] = row["forces"][name] * factor
+    return change
 
 
 def turn_normal(state, degrees):
@@ -217,9 +249,9 @@ def change_mesh(level, _):
 
 
 def check_changes(cases):
-    hertz, rods, tresca, ice, patch, mean, wheel = (
+    hertz, rods, tresca, ice, patch, mean, wheel, wall = (
         cases[name] for name in ("hertz", "crossing-rods", "tresca", "ice", "stick-slip",
-                                 "incompressible", "wheel"))
+                                 "incompressible", "wheel", "wall"))
     deep = {case.name: 1e-4 * np.abs(case.level.displacement).max()
             for case in cases.values()}
     for case in (hertz, rods, tresca):
@@ -244,6 +276,19 @@ def check_changes(cases):
                     ["states"])
         case.expect("normal of a node that slides", turn_normal(1, 1.),
                     ["tension", "cone", "slip", "states"])
+    for factor in (.999, 1.001):
+        wall.expect("friction of the wall", change_further("friction_coefficient",
+                                                           factor), ["cone", "states"])
+    wall.expect("the wall is nearer", move_further(-deep["wall"]), ["penetration"])
+    wall.expect("the wall is farther", move_further(deep["wall"]), ["states"])
+    wall.expect("floor and wall are mistaken for each other", swap_sections, ["given"])
+    wall.expect("a node is said to be on the other one", swap_one_section, ["given"])
+    wall.expect("the law of the wall is another one",
+                lambda level, _: setattr(level.contacts[1], "friction_law", "none"),
+                ["given"])
+    for name in ("contact", "contact_2", "contact_2_normal", "contact_tangential",
+                 "traction_4"):
+        wall.expect(f"reported force {name}", report_force(name, 1.0001))
     for case in (hertz, rods, ice, patch, mean):
         case.expect("less friction", scale("friction_coefficient", .999), ["cone"])
         case.expect("more friction", scale("friction_coefficient", 1.001),
