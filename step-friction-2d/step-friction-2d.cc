@@ -19,6 +19,7 @@
 #include <common/algorithms/discretization_stop.h>
 #include <common/algorithms/initial_guess.h>
 #include <common/contact/contact_forces.h>
+#include <common/contact/force_balance.h>
 #include <common/discretization/discretization.h>
 #include <common/discretization/mesh_refinement.h>
 #include <common/discretization/volumetric_strain.h>
@@ -407,6 +408,8 @@ namespace StepFriction2d
   // its energy, its step length and the number of components that truncation
   // has taken from coarse functions. The results say how to read them. From the
   // last levels it estimates the errors of pressure, half-widths and forces.
+  // With <code>Output/Forces</code> there are reactions as well: the rows of
+  // prescribed degrees of freedom are still in the matrix, for $Au-f$.
   //
   // The history is rewritten as a whole after each level and put in place by
   // renaming. A run that is killed leaves all levels that were complete.
@@ -423,6 +426,9 @@ namespace StepFriction2d
     records.level.estimated_error = estimate.total;
     records.level.setup_seconds   = setup_seconds;
     records.level.solve_seconds   = solve_seconds;
+    if (output.wants_forces())
+      records.forces.push_back(
+        {level, force_balance(discretization, report.residual)});
     output.add_level(
       records, discretization, displacement, estimate.cell_errors);
 

@@ -179,6 +179,42 @@ namespace Friction
 
 
 
+    // The forces are the same on all levels.
+    template <int dim, typename F>
+    void
+    for_each_force_column(const ForceBalance<dim> &balance, const F &column)
+    {
+      using R = ForceRecord<dim>;
+      column("level", "level of refinement", Q::number, &R::level);
+      for (unsigned int i = 0; i < balance.forces.size(); ++i)
+        {
+          const ForceOnBody<dim> &force = balance.forces[i];
+          column(force.name,
+                 "force " + force.description + " on the body",
+                 Q::force,
+                 [i](const R &r) { return r.balance.forces[i].total; });
+          if (!force.is_contact)
+            continue;
+          column(force.name + "_normal",
+                 "sum of the normal forces " + force.description,
+                 Q::force,
+                 [i](const R &r) { return r.balance.forces[i].normal; });
+          column(force.name + "_tangential",
+                 "sum of the tangential forces " + force.description,
+                 Q::force,
+                 [i](const R &r) { return r.balance.forces[i].tangential; });
+        }
+      column("sum", "sum of all forces on the body", Q::force, [](const R &r) {
+        return r.balance.sum();
+      });
+      column("imbalance",
+             "their sum, of the largest force",
+             Q::number,
+             [](const R &r) { return r.balance.imbalance(); });
+    }
+
+
+
     // One dataset with a number of each record.
     template <typename Number>
     std::enable_if_t<std::is_arithmetic_v<Number>, dealii::HDF5::DataSet>
@@ -280,11 +316,13 @@ namespace Friction
   History<dim>::add_level(const LevelRecord                     &level,
                           const std::vector<CycleRecord>        &cycles,
                           const std::vector<ContactRecord<dim>> &contact,
-                          const std::vector<OuterRecord>        &outer)
+                          const std::vector<OuterRecord>        &outer,
+                          const std::vector<ForceRecord<dim>>   &forces)
   {
     level_records.push_back(level);
     cycle_records.insert(cycle_records.end(), cycles.begin(), cycles.end());
     outer_records.insert(outer_records.end(), outer.begin(), outer.end());
+    force_records.insert(force_records.end(), forces.begin(), forces.end());
     if (!contact.empty())
       {
         contact_levels.emplace_back();
@@ -315,6 +353,9 @@ namespace Friction
       level_records.size() * sizeof(LevelRecord) +
       cycle_records.size() * (2 * sizeof(unsigned int) + 4 * sizeof(double)) +
       outer_records.size() * (sizeof(unsigned int) + sizeof(double));
+    for (const ForceRecord<dim> &record : force_records)
+      size += sizeof(unsigned int) +
+        (record.balance.forces.size() + 1) * dim * sizeof(double);
     for (const ContactLevel &contact : contact_levels)
       size += contact.nodes.size() *
         ((5 * dim + 3) * sizeof(double) + sizeof(unsigned int));
@@ -332,8 +373,11 @@ namespace Friction
       // diagnosis, and in release mode deal.II's classes go on regardless. So
       // we first write a plain file that is certainly larger than the real
       // one will be; HDF5 then gets the room it has left.
-      const std::size_t room =
-        payload() + (1 << 14) + (1 << 13) * (contact_levels.size() + 4);
+      const std::size_t room = payload() + (1 << 14) +
+        (1 << 13) * (contact_levels.size() + 4) +
+        (force_records.empty()
+           ? 0
+           : (1 << 11) * (3 * force_records[0].balance.forces.size() + 4));
       {
         std::ofstream out(temporary, std::ios::binary);
         if (out)
@@ -381,6 +425,12 @@ namespace Friction
     if (!outer_records.empty())
       for_each_outer_column(ColumnWriter<OuterRecord>(
         file.create_group("outer"), outer_records, dim, &description.units));
+
+    if (!force_records.empty())
+      for_each_force_column(
+        force_records.back().balance,
+        ColumnWriter<ForceRecord<dim>>(
+          file.create_group("forces"), force_records, dim, &description.units));
 
     if (!contact_levels.empty())
       {

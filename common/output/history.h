@@ -8,6 +8,7 @@
 
 #include <boost/serialization/vector.hpp>
 
+#include <common/contact/force_balance.h>
 #include <common/parameters/parameters.h>
 
 #include <iosfwd>
@@ -197,6 +198,24 @@ namespace Friction
     }
   };
 
+  /**
+   * What is kept of one level if the scene wants to know the forces on the
+   * body: one row in each dataset under `/forces`.
+   */
+  template <int dim>
+  struct ForceRecord
+  {
+    unsigned int      level = 0;
+    ForceBalance<dim> balance;
+
+    template <class Archive>
+    void
+    serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &level &balance;
+    }
+  };
+
   /** What a history says about its run besides the records. */
   struct RunDescription
   {
@@ -221,6 +240,11 @@ namespace Friction
    * (one-dimensional). A level without contact nodes has no group there, since
    * HDF5 through deal.II has no empty datasets; for the same reason `/cycles`
    * exists only once there was a cycle.
+   *
+   * With `Output/Forces` there are under `/forces` `level`, a dataset for each
+   * of the forces on the body under its name (levels $\times$ dim), those of
+   * obstacles with `_normal` (one-dimensional) and `_tangential` besides, see
+   * ForceOnBody; and of all of them `sum` and `imbalance`.
    *
    * Each dataset has the attribute `label`, what it is in a few words, and
    * `units` if it has a unit with a name, see unit_of(). Those of
@@ -251,13 +275,15 @@ namespace Friction
     /**
      * Take over the records of a level that is complete, and write the file.
      * The levels are expected in the order in which they are computed; the
-     * cycles carry their own level. A collective operation, an error of the
-     * first process is that of all; its records are the ones that count.
+     * cycles carry their own level. Of the forces there is one record, or none.
+     * A collective operation, an error of the first process is that of all; its
+     * records are the ones that count.
      */
     void add_level(const LevelRecord                     &level,
                    const std::vector<CycleRecord>        &cycles,
                    const std::vector<ContactRecord<dim>> &contact,
-                   const std::vector<OuterRecord>        &outer = {});
+                   const std::vector<OuterRecord>        &outer  = {},
+                   const std::vector<ForceRecord<dim>>   &forces = {});
 
     const std::vector<LevelRecord> &levels() const;
 
@@ -267,6 +293,7 @@ namespace Friction
     serialize(Archive &archive, const unsigned int /*version*/)
     {
       archive &level_records &cycle_records &outer_records &contact_levels;
+      archive                                              &force_records;
     }
 
   private:
@@ -300,6 +327,8 @@ namespace Friction
     std::vector<CycleRecord>  cycle_records;
     std::vector<OuterRecord>  outer_records;
     std::vector<ContactLevel> contact_levels;
+
+    std::vector<ForceRecord<dim>> force_records;
   };
 } // namespace Friction
 

@@ -33,6 +33,9 @@ namespace Friction
 
     /// Those of the contact nodes that this process owns.
     std::vector<ContactRecord<dim>> own_contact;
+
+    /// If they are wanted: one record. Left to the caller.
+    std::vector<ForceRecord<dim>> forces;
   };
 
   /**

@@ -18,7 +18,7 @@ namespace Friction
   namespace
   {
     // To be increased whenever what is in a checkpoint changes.
-    constexpr unsigned int checkpoint_format = 3;
+    constexpr unsigned int checkpoint_format = 4;
 
 
 
@@ -93,6 +93,8 @@ namespace Friction
     const RunScope part(communicator, RunPart::records);
     if (history.levels().back().contact_nodes > 0)
       the_console.note(describe_quantities(history.levels().back()));
+    if (!last_forces.empty())
+      the_console.note(last_forces);
     for (const std::string &warning :
          warnings_at_end(discretization, displacement, state))
       the_console.warning(warning);
@@ -143,7 +145,10 @@ namespace Friction
         describe_profile(records,
                          parameters.output.times,
                          discretization.constraints().communicator()));
-    history.add_level(record, records.cycles, records.contact, records.outer);
+    history.add_level(
+      record, records.cycles, records.contact, records.outer, records.forces);
+    if (!records.forces.empty())
+      last_forces = records.forces.back().balance.describe();
     if (parameters.output.fields)
       {
         const RunScope part_of_fields(communicator, RunPart::fields);
@@ -230,6 +235,9 @@ namespace Friction
     records.level.estimated_error             = estimate.total;
     records.level.setup_seconds               = nest.setup_seconds();
     records.level.solve_seconds               = nest.solve_seconds();
+    if (wants_forces())
+      records.forces.push_back(
+        {nest.level(), force_balance(discretization, nest.report().residual)});
     add_level(
       records, discretization, nest.displacement(), estimate.cell_errors);
     if (const auto exact = nest.scene().exact_displacement())

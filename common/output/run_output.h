@@ -48,12 +48,21 @@ namespace Friction
               const std::string &version,
               const MPI_Comm     communicator);
 
+    /** Whether the records of levels should have the forces on the body, see
+     * force_balance(). */
+    bool
+    wants_forces() const
+    {
+      return parameters.output.forces;
+    }
+
     /** What should be known before the first solution: prints the warnings of
      * warnings_at_start(). */
     void check_start(const Discretization<dim> &discretization);
 
     /** The same for the last solution, see warnings_at_end(), whose quantities
-     * it prints with their errors, see set_errors(). Throws InputError if its
+     * it prints with their errors, see set_errors(), and its forces on the body
+     * if they have been recorded. Throws InputError if its
      * displacements are a thousand times larger than the body. */
     void check_end(const Discretization<dim> &discretization,
                    const VectorType          &displacement,
@@ -148,6 +157,8 @@ namespace Friction
     FieldWriter<dim>      fields;
     VerificationData<dim> verification;
     Checkpoints           checkpoints;
+
+    std::string last_forces; ///< as a sentence
 
     double last_exact_error = 0.;
     bool   restarted        = false;

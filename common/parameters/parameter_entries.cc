@@ -491,6 +491,14 @@ namespace Friction
        "pictures, from which those of stresses and energies follow. Nothing is "
        "converted."},
       {"Output",
+       "Forces",
+       "false",
+       flag,
+       "Whether the run prints in the end, and records for each level in "
+       "history.h5, the forces on the body: those of the obstacle, those of "
+       "what holds the body where displacements are prescribed, and the loads; "
+       "and how well they balance."},
+      {"Output",
        "Checkpoint",
        "false",
        flag,

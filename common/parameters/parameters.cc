@@ -1053,6 +1053,7 @@ namespace Friction
                                               : FieldFormat::hdf5);
       output.principal_stresses = values.flag("Output/Principal stresses");
       output.units              = read_units(values);
+      output.forces       = values.flag("Output/Forces");
       output.checkpoint   = values.flag("Output/Checkpoint");
       output.verification = values.flag("Output/Verification");
       output.times        = values.flag("Output/Times");

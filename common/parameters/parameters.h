@@ -210,6 +210,7 @@ namespace Friction
       FieldFormat format             = FieldFormat::vtu;
       bool        principal_stresses = false; ///< among the fields
       UnitNames   units;
+      bool        forces       = false; ///< print and record those on the body
       bool        checkpoint   = false; ///< one after each level
       bool        verification = false; ///< write what friction-verify reads
       bool        times        = true;  ///< print what depends on the clock

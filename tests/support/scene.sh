@@ -46,6 +46,10 @@ awk -v bound="$cycles" '
     next
   }
   /^Peak pressure/ {next}
+  /They balance to/ {
+    for (i = 1; i < NF; ++i)
+      if ($i == "balance" && $(i + 2) + 0 <= 1e-6) $(i + 2) = "rounding"
+  }
   /exact to/ {sub(/energy norm [^,]*,/, "rounding,")}
   {print}' "$work/output" >"$work/table"
 

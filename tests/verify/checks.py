@@ -4,6 +4,7 @@ history.h5 by name, under 'contact' those of the contact nodes."""
 
 import numpy as np
 
+from nodal_forces import nodal_loads
 from recomputed import Recomputed
 from scene_check import compare_with_scene
 from verdict import ROUNDING, Verdict, relative
@@ -24,6 +25,7 @@ def verify_level(level, reported, scene, tolerance):
     check_certificate(verdict, found, reported, tolerance)
     check_reported_numbers(verdict, found, reported, tolerance)
     check_reported_nodes(verdict, found, reported, tolerance)
+    check_reported_forces(verdict, found, reported, tolerance)
     return verdict, compare_with_scene(verdict, level, scene, found.hanging, exact)
 
 
@@ -254,6 +256,55 @@ def check_reported_numbers(verdict, found, reported, tolerance):
         verdict.check(None, relative(number, reported[name], least), tolerance,
                       f"{name} is reported to be {reported[name]:.6g} and is "
                       f"{number:.6g}")
+
+
+def check_reported_forces(verdict, found, reported, tolerance):
+    """The forces on the body, if they are there: those of the obstacle, reactions as
+    far as a boundary does not share nodes with another one that is held, loads, and
+    their sum, which the residual alone must give."""
+    level, forces = found.level, reported.get("forces", {})
+    if not forces:
+        return
+    normals = level.contact_normals
+    contact = -found.pressing[:, None] * normals - found.r_T
+    mine = {"contact": contact.sum(axis=0), "contact_normal": found.pressing.sum(),
+            "contact_tangential": -found.r_T.sum(axis=0)}
+    others = -found.r.copy()
+    others[level.contact_nodes] -= contact
+    others[~level.is_prescribed] = 0
+    held = {int(name[len("held_"):]): np.unique(
+        level.boundary_faces[level.boundary_ids == int(name[len("held_"):])])
+        for name in forces if name.startswith("held_")}
+    reactions = sum((forces[name] for name in forces
+                     if name.startswith("held_") or name == "pinned"),
+                    np.zeros(level.dim))
+    mine["all reactions"] = others.sum(axis=0)
+    forces = dict(forces, **{"all reactions": reactions})
+    for boundary, nodes in held.items():
+        shared = [n for b, n in held.items() if b != boundary] + [np.zeros(0, int)]
+        if "pinned" not in forces and not np.intersect1d(nodes,
+                                                         np.hstack(shared)).size:
+            mine[f"held_{boundary}"] = others[nodes].sum(axis=0)
+    if level.body_force is not None:
+        mine["body_force"] = nodal_loads(level, level.body_force,
+                                         level.traction_faces[:0], None).sum(axis=0)
+    tractions = sum((forces[name] for name in forces if name.startswith("traction_")),
+                    np.zeros(level.dim))
+    forces["all tractions"] = tractions
+    mine["all tractions"] = nodal_loads(level, None, level.traction_faces,
+                                        level.tractions).sum(axis=0)
+    largest = max(np.abs(value).max() for value in mine.values())
+    for name, value in mine.items():
+        theirs = forces.get(name)
+        verdict.demand(theirs is not None, f"history.h5 has no force '{name}'")
+        if theirs is not None:
+            verdict.check(None, np.abs(theirs - value).max() / (largest or 1.), tolerance,
+                          f"the force '{name}' is reported to be {theirs} and is {value}")
+    total = sum((np.asarray(mine[name]) for name in
+                 ("contact", "all reactions", "all tractions", "body_force")
+                 if name in mine), np.zeros(level.dim))
+    verdict.check(None, np.linalg.norm(total) / (largest or 1.), tolerance,
+                  "the forces on the body do not balance")
 
 
 def check_reported_nodes(verdict, found, reported, tolerance):

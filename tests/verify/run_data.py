@@ -118,6 +118,11 @@ def read_history(directory):
                 group = file.get(f"contact/level_{row['level']:02d}")
                 if group is not None:
                     row["contact"] = {name: item[()] for name, item in group.items()}
+                forces = {name: item[()] for name, item in file.get("forces", {}).items()}
+                at = np.flatnonzero(forces.get("level", np.zeros(0)) == row["level"])
+                if len(at):
+                    row["forces"] = {name: values[at[0]]
+                                     for name, values in forces.items()}
     except (OSError, KeyError) as error:
         raise NotReadable(f"'{path}' cannot be read: it is damaged, or of another "
                           "version.") from error
