@@ -100,18 +100,20 @@ namespace Friction
     normals_of_other_surface(const Discretization<dim> &discretization)
     {
       std::vector<Tensor<1, dim>> result;
-      const Scene<dim>           &scene = discretization.scene();
-      if (scene.contact_normal() == ContactNormal::body)
-        {
-          for (const ContactNode<dim> &p : discretization.contact())
-            result.push_back(scene.obstacle().empty()
-                               ? p.normal()
-                               : scene.obstacle().normal(p.point, p.normal()));
-          return result;
-        }
-      const auto normals = normals_of_faces(discretization);
+      const Scene<dim>           &scene   = discretization.scene();
+      const auto                  normals = normals_of_faces(discretization);
       for (const ContactNode<dim> &p : discretization.contact())
         {
+          const ContactCondition<dim> &condition =
+            scene.contact_conditions()[p.condition];
+          if (condition.normal == ContactNormal::body)
+            {
+              result.push_back(
+                condition.obstacle.empty()
+                  ? p.normal()
+                  : condition.obstacle.normal(p.point, p.normal()));
+              continue;
+            }
           const auto &around = normals.at(p.node);
           if (std::any_of(
                 around.begin(), around.end(), [&](const Tensor<1, dim> &n) {
