@@ -407,6 +407,8 @@ namespace StepFriction2d
   // its energy, its step length and the number of components that truncation
   // has taken from coarse functions. The results say how to read them. From the
   // last levels it estimates the errors of pressure, half-widths and forces.
+  // With <code>Output/Forces</code> there are reactions as well: the rows of
+  // prescribed degrees of freedom are still in the matrix, for $Au-f$.
   //
   // Who wants to know more about the latter sets <code>Output/Forces</code>.
   // Since the rows of prescribed degrees of freedom are still in the matrix,

@@ -207,15 +207,14 @@ namespace Friction
     const Scene<dim>            &scene       = discretization.scene();
     const NodalConstraints<dim> &constraints = discretization.constraints();
 
-    // Of this process: what the obstacle does, and what is left of -r where
-    // displacements are prescribed. The last reaction is that of pinned points.
+    // Of this process: what obstacles do, and -r where displacements are
+    // prescribed, which is not among their directions. The last reaction is
+    // that of pinned points.
     const auto                   &conditions = scene.contact_conditions();
     std::vector<ForceOnBody<dim>> contacts(conditions.size());
     std::vector<Tensor<1, dim>> reactions(scene.dirichlet_conditions().size() +
                                           1);
     const std::vector<unsigned int> holders = find_holders(discretization);
-    VectorType                      forces(residual);
-    forces *= -1.;
     for (const ContactNode<dim> &node : discretization.contact())
       {
         const Tensor<1, dim> force    = contact_force(node, residual);
@@ -224,15 +223,13 @@ namespace Friction
         contact.total += force;
         contact.normal += pressing;
         contact.tangential += force + pressing * node.normal();
-        for (unsigned int d = 0; d < dim; ++d)
-          forces.local_element(dim * node.node + d) -= force[d];
       }
     for (unsigned int node = 0; node < constraints.n_owned_nodes(); ++node)
       if (!constraints.is_hanging(node))
         for (unsigned int d = 0; d < dim; ++d)
           if (constraints.is_prescribed(node, d))
-            reactions[holders[dim * node + d]][d] +=
-              forces.local_element(dim * node + d);
+            reactions[holders[dim * node + d]][d] -=
+              residual.local_element(dim * node + d);
 
     std::vector<Tensor<1, dim>> tractions(scene.traction_conditions().size());
     Tensor<1, dim>              body_force;
