@@ -157,7 +157,9 @@ namespace StepFriction3d
              << (std::abs(vector[d]) < 1e-6 * scale ? 0. : vector[d]);
       text << ")";
     };
-    text << "Force of the obstacle on the body ";
+    text << (nest.scene().n_contact_boundaries() > 1
+               ? "Force of all obstacles on the body "
+               : "Force of the obstacle on the body ");
     print(force, force.norm());
     text << ", moment about the origin ";
     print(moment, lever * force.norm());

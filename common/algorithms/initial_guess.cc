@@ -23,8 +23,10 @@ namespace Friction
           if (excess > 0)
             for (unsigned int d = 0; d < dim; ++d)
               u.local_element(dim * node.node + d) -= excess * node.normal()[d];
-          const double stress = scene.friction_law() == FrictionLaw::tresca
-            ? scene.friction_bound()->value(node.point)
+          const auto &given =
+            scene.contact_conditions()[node.condition].friction_bound;
+          const double stress = given != nullptr
+            ? given->value(node.point)
             : std::max(0., -normal_component(node, tractions));
           state.set_normal_force(p, node.measure * stress);
           state.set(p, excess >= 0, false);

@@ -158,9 +158,9 @@ namespace Friction
 
         // A prescribed component takes part in the slip; the force in its
         // direction is a reaction, of which friction is but a part.
-        const double tau   = problem.has_coulomb_friction()
-            ? std::max(0., pressing)
-            : state.normal_force(p);
+        const bool   coulomb = problem.has_coulomb_friction(node);
+        const double tau =
+          coulomb ? std::max(0., pressing) : state.normal_force(p);
         const double bound = problem.effective_coefficient(node) * tau;
         const auto r_T = tangential_part(node, residual, node.n_free_tangents);
         const auto u_T = tangential_part(node, u);
@@ -183,7 +183,7 @@ namespace Friction
               touches ? relative_of_zone(distance)
                       : relative(std::abs(pressing)));
         if (!problem.has_friction() || node.n_free_tangents == 0 ||
-            (problem.has_coulomb_friction() && !touches))
+            (coulomb && !touches))
           continue;
         const double missing =
           bound * (slip == 0 ? 1. : slips_by.norm()) - r_T.norm();

@@ -25,11 +25,12 @@ namespace Friction
                     ContactState               &state)
   {
     for (unsigned int p = 0; p < contact.size(); ++p)
-      state.set_normal_force(
-        p,
-        state.in_contact(p)
-          ? std::max(0., normal_component(contact[p], residual))
-          : 0.);
+      if (!contact[p].bound_is_given)
+        state.set_normal_force(
+          p,
+          state.in_contact(p)
+            ? std::max(0., normal_component(contact[p], residual))
+            : 0.);
   }
 
 

@@ -17,7 +17,8 @@ namespace Friction
                                const VectorType       &residual);
 
   /** Sets the normal forces of the friction bounds to those of the displacement
-   * with this residual f - A u, at nodes in contact, and to zero elsewhere. */
+   * with this residual f - A u, at nodes in contact, and to zero elsewhere; but
+   * not where a bound is given. */
   template <int dim>
   void set_normal_forces(const ContactBoundary<dim> &contact,
                          const VectorType           &residual,

@@ -207,10 +207,11 @@ namespace Friction
     const Scene<dim>            &scene       = discretization.scene();
     const NodalConstraints<dim> &constraints = discretization.constraints();
 
-    // Of this process: what the obstacle does, and -r where displacements are
-    // prescribed, which is not among its directions. The last reaction is that
-    // of pinned points.
-    ForceOnBody<dim>            contact;
+    // Of this process: what obstacles do, and -r where displacements are
+    // prescribed, which is not among their directions. The last reaction is
+    // that of pinned points.
+    const auto                   &conditions = scene.contact_conditions();
+    std::vector<ForceOnBody<dim>> contacts(conditions.size());
     std::vector<Tensor<1, dim>> reactions(scene.dirichlet_conditions().size() +
                                           1);
     const std::vector<unsigned int> holders = find_holders(discretization);
@@ -218,6 +219,7 @@ namespace Friction
       {
         const Tensor<1, dim> force    = contact_force(node, residual);
         const double         pressing = -force * node.normal();
+        ForceOnBody<dim>    &contact  = contacts[node.condition];
         contact.total += force;
         contact.normal += pressing;
         contact.tangential += force + pressing * node.normal();
@@ -246,14 +248,20 @@ namespace Friction
       force.total       = sum_of_all(own, communicator);
       balance.forces.push_back(force);
     };
-    if (scene.contact_boundary_id() != numbers::invalid_boundary_id)
-      {
-        add("contact", "of the obstacle", contact.total);
-        ForceOnBody<dim> &force = balance.forces.back();
-        force.is_contact        = true;
-        force.normal     = sum_over_processes(contact.normal, communicator);
-        force.tangential = sum_of_all(contact.tangential, communicator);
-      }
+    for (unsigned int i = 0; i < conditions.size(); ++i)
+      if (conditions[i].has_boundary())
+        {
+          const std::string number = std::to_string(conditions[i].number);
+          add(i == 0 ? "contact" : "contact_" + number,
+              conditions.size() == 1
+                ? "of the obstacle"
+                : "of '" + conditions[i].obstacle_section() + "'",
+              contacts[i].total);
+          ForceOnBody<dim> &force = balance.forces.back();
+          force.is_contact        = true;
+          force.normal = sum_over_processes(contacts[i].normal, communicator);
+          force.tangential = sum_of_all(contacts[i].tangential, communicator);
+        }
     for (unsigned int i = 0; i < scene.dirichlet_conditions().size(); ++i)
       {
         const std::string id =

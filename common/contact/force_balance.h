@@ -20,9 +20,10 @@ namespace Friction
   template <int dim>
   struct ForceOnBody
   {
-    /// As part of a file: `contact`, `held_3` where displacements are
-    /// prescribed on the boundary with id 3, `pinned` where they are in single
-    /// vertices, `traction_3`, `body_force`.
+    /// As part of a file: `contact`, and where there are several contact
+    /// boundaries `contact_2` for that of 'Contact 2', `held_3` where
+    /// displacements are prescribed on the boundary with id 3, `pinned` where
+    /// they are in single vertices, `traction_3`, `body_force`.
     std::string name;
 
     /// As part of a sentence: `of the obstacle`, `of what holds boundary 3`.

@@ -15,9 +15,7 @@ namespace Friction
     , u(u)
   {
     problem.stiffness.update_ghosts(u);
-    double     inside = 0;
-    const bool bounds_are_given =
-      problem.has_friction() && !problem.has_coulomb_friction();
+    double inside = 0;
     for (unsigned int p = 0; p < problem.contact.size(); ++p)
       {
         const ContactNode<dim> &node = problem.contact[p];
@@ -28,9 +26,9 @@ namespace Friction
             stress =
               std::max(stress, normal_component(node, residual) / node.measure);
           }
-        if (bounds_are_given)
+        if (problem.has_friction() && !problem.has_coulomb_friction(node))
           stress = std::max(stress,
-                            problem.effective_coefficient() *
+                            problem.effective_coefficient(node) *
                               state.normal_force(p) / node.measure);
       }
     const MPI_Comm comm = problem.communicator();

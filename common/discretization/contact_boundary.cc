@@ -94,8 +94,17 @@ namespace Friction
     VectorType normals(constraints.partitioner());
     VectorType measures(constraints.partitioner());
 
-    // Where the vertices are, also those of faces of other processes.
-    std::map<unsigned int, Point<dim>> points;
+    // Where the vertices are, also those of faces of other processes, and to
+    // which condition they belong. It is an error if there are several, unless
+    // the node cannot move; then it may touch nothing.
+    struct Vertex
+    {
+      Point<dim>   point;
+      unsigned int condition;
+      unsigned int other; // if there is one
+    };
+    std::map<unsigned int, Vertex> vertices;
+    const auto                    &conditions = scene.contact_conditions();
 
     const FE_Q<dim>       scalar_element(1);
     const QGauss<dim - 1> quadrature(2);
@@ -107,10 +116,13 @@ namespace Friction
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (!cell->is_artificial())
         for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->at_boundary() &&
-              cell->face(f)->boundary_id() == scene.contact_boundary_id())
+          if (const ContactCondition<dim> *const condition =
+                cell->face(f)->at_boundary()
+                ? scene.contact_on(cell->face(f)->boundary_id())
+                : nullptr)
             {
-              const auto face = cell->face(f);
+              const auto         face   = cell->face(f);
+              const unsigned int number = condition - conditions.data();
               if (cell->is_locally_owned())
                 face_values.reinit(
                   typename Triangulation<dim>::cell_iterator(cell), f);
@@ -121,7 +133,11 @@ namespace Friction
                   const types::global_dof_index dof =
                     cell->vertex_dof_index(cell_vertex, 0);
                   const unsigned int node = constraints.node_of_dof(dof);
-                  points[node]            = face->vertex(v);
+                  const auto         vertex =
+                    vertices.insert({node, {face->vertex(v), number, number}})
+                      .first;
+                  if (vertex->second.condition != number)
+                    vertex->second.other = number;
                   if (!cell->is_locally_owned())
                     continue;
 
@@ -156,26 +172,45 @@ namespace Friction
     measures.compress(VectorOperation::add);
 
     on_all_processes(constraints.communicator(), [&]() {
-      for (const auto &entry : points)
-        if (!constraints.is_hanging(entry.first) &&
-            entry.first < constraints.n_owned_nodes())
+      for (const auto &[number, vertex] : vertices)
+        if (!constraints.is_hanging(number) &&
+            number < constraints.n_owned_nodes())
           {
+            const ContactCondition<dim> &condition =
+              conditions[vertex.condition];
+            if (vertex.other != vertex.condition)
+              {
+                if (constraints.is_fixed(number))
+                  continue;
+                throw InputError(
+                  scene.subject() + "the node at " + describe(vertex.point) +
+                  " lies on two contact boundaries, those of '" +
+                  conditions[std::min(vertex.condition, vertex.other)]
+                    .section() +
+                  "' and '" +
+                  conditions[std::max(vertex.condition, vertex.other)]
+                    .section() +
+                  "', and can have one normal only; end one of them before "
+                  "that node, by faces with another boundary id, or "
+                  "prescribe its displacement.");
+              }
             Tensor<1, dim> normal;
             for (unsigned int d = 0; d < dim; ++d)
-              normal[d] = normals.local_element(dim * entry.first + d);
+              normal[d] = normals.local_element(dim * number + d);
             ContactNode<dim> node;
-            node.node    = entry.first;
-            node.point   = entry.second;
-            node.measure = measures.local_element(dim * entry.first);
+            node.node                    = number;
+            node.point                   = vertex.point;
+            node.condition               = vertex.condition;
+            node.measure                 = measures.local_element(dim * number);
             const Tensor<1, dim> outward = normal / normal.norm();
-            node.frame[0] = scene.contact_normal() == ContactNormal::body
+            node.frame[0] = condition.normal == ContactNormal::body
               ? outward
-              : scene.obstacle().normal(entry.second, outward);
+              : condition.obstacle.normal(vertex.point, outward);
             if (node.frame[0].norm() > 0.)
               add_node(node, constraints, scene);
           }
     });
-    find_coefficients(constraints, scene);
+    find_friction(constraints, scene);
   }
 
 
@@ -183,25 +218,49 @@ namespace Friction
   // The law of friction holds at nodes, and so a node has the coefficient of
   // its point. What nodes keep of it is a fraction, so that all of them follow
   // when the coefficient is made smaller for a while, see SafeguardedSolver.
+  // Where Tresca's bound is given, the fraction makes a coefficient of one.
   template <int dim>
   void
-  ContactBoundary<dim>::find_coefficients(
-    const NodalConstraints<dim> &constraints, const Scene<dim> &scene)
+  ContactBoundary<dim>::find_friction(const NodalConstraints<dim> &constraints,
+                                      const Scene<dim>            &scene)
   {
-    coefficient = scene.friction_coefficient();
-    if (scene.varying_coefficient() == nullptr)
-      return;
+    const auto &conditions = scene.contact_conditions();
+    bool        any_tresca = false, any_varies = false;
+    for (const ContactCondition<dim> &condition : conditions)
+      {
+        if (conditions.size() > 1 && !condition.has_boundary())
+          continue;
+        coefficient = std::max(coefficient, condition.friction_coefficient);
+        any_tresca |= condition.friction_law == FrictionLaw::tresca;
+        any_varies |= condition.varying_coefficient != nullptr;
+        if (condition.friction_law == FrictionLaw::coulomb)
+          law = FrictionLaw::coulomb;
+      }
     on_all_processes(constraints.communicator(), [&]() {
       for (ContactNode<dim> &node : nodes)
         {
-          node.friction_share = scene.varying_coefficient()->value(node.point);
+          const ContactCondition<dim> &condition = conditions[node.condition];
+          node.bound_is_given = condition.friction_law == FrictionLaw::tresca;
+          node.friction_share = condition.varying_coefficient == nullptr
+            ? condition.friction_coefficient
+            : condition.varying_coefficient->value(node.point);
           coefficient         = std::max(coefficient, node.friction_share);
         }
     });
-    coefficient = max_over_processes(coefficient, constraints.communicator());
+    if (any_varies)
+      coefficient = max_over_processes(coefficient, constraints.communicator());
+    if (any_tresca && !(coefficient > 0.))
+      law = FrictionLaw::tresca;
+    if (conditions.size() == 1 && !any_varies)
+      {
+        for (ContactNode<dim> &node : nodes)
+          node.friction_share = 1.;
+        return;
+      }
+    const double unit = coefficient > 0. ? coefficient : 1.;
     for (ContactNode<dim> &node : nodes)
       node.friction_share =
-        coefficient > 0. ? node.friction_share / coefficient : 0.;
+        (node.bound_is_given ? 1. : node.friction_share) / unit;
   }
 
 
@@ -214,6 +273,8 @@ namespace Friction
                                  const NodalConstraints<dim> &constraints,
                                  const Scene<dim>            &scene)
   {
+    const ContactCondition<dim> &condition =
+      scene.contact_conditions()[node.condition];
     Tensor<1, dim> normal = node.normal();
     // What rounding adds to the normal in a direction in which the node is
     // held would keep the prescribed value from being read back exactly,
@@ -236,7 +297,7 @@ namespace Friction
     // A node that is held in some directions moves in the others: where it is
     // that it meets the obstacle, it does so in these. If there are none to
     // meet it in, it competes with contact, see below.
-    if (scene.contact_normal() == ContactNormal::obstacle &&
+    if (condition.normal == ContactNormal::obstacle &&
         !constraints.is_fixed(node.node))
       {
         Tensor<1, dim> in_others = normal;
@@ -245,13 +306,13 @@ namespace Friction
         if (in_others.norm() > Obstacle<dim>::flattest_cosine)
           normal = in_others / in_others.norm();
       }
-    const double gap = scene.obstacle().gap(node.point, normal);
+    const double gap = condition.obstacle.gap(node.point, normal);
     if (!std::isfinite(gap))
       return;
 
     if (constraints.is_fixed(node.node))
       {
-        if (!scene.ignores_prescribed_penetration() &&
+        if (!condition.ignores_prescribed_penetration &&
             prescribed_value * normal - gap >
               1e-8 * (std::abs(gap) + prescribed_value.norm()))
           throw InputError(
@@ -261,8 +322,8 @@ namespace Friction
             "obstacle by " +
             std::to_string(prescribed_value * normal - gap) +
             ": prescribe a smaller displacement there or end the contact "
-            "boundary before that node, or set 'Contact/Ignore prescribed "
-            "penetration'.");
+            "boundary before that node, or set '" +
+            condition.section() + "/Ignore prescribed penetration'.");
         return;
       }
     for (const auto &e : prescribed_tangents)

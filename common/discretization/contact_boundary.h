@@ -36,9 +36,16 @@ namespace Friction
     /// forces divided by it are stresses. A length in 2D, an area in 3D.
     double measure;
 
-    /// The coefficient of friction, as a fraction of the largest one on the
-    /// contact boundary: 1 where it is the same everywhere.
+    /// The coefficient of friction, as a fraction of the largest one on all
+    /// contact boundaries: 1 where it is the same everywhere.
     double friction_share = 1.;
+
+    /// Which of Scene::contact_conditions() is about this node.
+    unsigned int condition = 0;
+
+    /// Tresca's law: the normal force of the state that friction reckons with
+    /// is given, and not that of the solution.
+    bool bound_is_given = false;
 
     /// Number of tangential directions that the node may move in. The tangents
     /// in the frame are sorted: first the free ones, then those in which the
@@ -55,7 +62,8 @@ namespace Friction
 
 
   /**
-   * The nodes of $\Gamma_S$ that can get into contact. Hanging nodes follow
+   * The nodes of $\Gamma_S$ that can get into contact, on all parts of the
+   * boundary that the scene says so of. Hanging nodes follow
    * their masters and carry nothing of their own; their share of the boundary
    * measure goes to the masters. Nodes that are entirely prescribed, and nodes
    * whose normal never meets the obstacle, are left out.
@@ -72,13 +80,14 @@ namespace Friction
     /**
      * Collective; errors are thrown on all processes.
      * @param hanging  hanging nodes.
-     * @param scene    says which part of the boundary it is, and what it may
-     *                 touch.
+     * @param scene    says which parts of the boundary it is, and what they
+     *                 may touch.
      * @throws InputError if a node is prescribed to penetrate the obstacle, if
      *         a prescribed component at a contact node has a part in normal
-     *         direction, so that contact and prescribed value would compete, or
-     *         if the coefficient of friction is negative or no number at a
-     * node.
+     *         direction, so that contact and prescribed value would compete, if
+     *         the coefficient of friction is negative or no number at a node,
+     *         or if a node belongs to two contact boundaries, which would give
+     *         it two normals, unless all of its components are prescribed.
      */
     ContactBoundary(const Mapping<dim>              &mapping,
                     const DoFHandler<dim>           &dof_handler,
@@ -98,6 +107,14 @@ namespace Friction
     largest_coefficient() const
     {
       return coefficient;
+    }
+
+    /** That of Coulomb if there is any such friction, otherwise that of Tresca,
+     * or none. */
+    FrictionLaw
+    friction_law() const
+    {
+      return law;
     }
 
     const ContactNode<dim> &
@@ -121,9 +138,10 @@ namespace Friction
   private:
     std::vector<ContactNode<dim>> nodes;
     double                        coefficient = 0.;
+    FrictionLaw                   law         = FrictionLaw::none;
 
-    void find_coefficients(const NodalConstraints<dim> &constraints,
-                           const Scene<dim>            &scene);
+    void find_friction(const NodalConstraints<dim> &constraints,
+                       const Scene<dim>            &scene);
 
     void add_node(ContactNode<dim>             node,
                   const NodalConstraints<dim> &constraints,

@@ -37,7 +37,8 @@ namespace Friction
 
     /// $F$, the largest one where it varies. With the law of Tresca the bound
     /// at a node is F times the given normal force of the state, with that of
-    /// Coulomb the node's share of F times the one found.
+    /// Coulomb the node's share of F times the one found. Where there are both,
+    /// this is Coulomb's law, and nodes know better.
     double friction_coefficient;
 
     MPI_Comm
@@ -58,6 +59,13 @@ namespace Friction
     has_coulomb_friction() const
     {
       return has_friction() && friction_law == FrictionLaw::coulomb;
+    }
+
+    /// The same at a node.
+    bool
+    has_coulomb_friction(const ContactNode<dim> &node) const
+    {
+      return has_coulomb_friction() && !node.bound_is_given;
     }
 
     /// The largest coefficient that the parts of the solver reckon with.

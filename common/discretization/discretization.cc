@@ -72,7 +72,7 @@ namespace Friction
     contact_boundary = std::make_unique<ContactBoundary<dim>>(
       the_mapping, dofs, hanging, *nodal_constraints, the_scene);
     measure_faces();
-    const FrictionLaw law = the_scene.friction_law();
+    const FrictionLaw law = contact_boundary->friction_law();
     discrete_problem =
       std::make_unique<DiscreteProblem<dim>>(DiscreteProblem<dim>{
         leaf_operator,

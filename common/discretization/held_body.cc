@@ -100,18 +100,24 @@ namespace Friction
     normals_of_other_surface(const Discretization<dim> &discretization)
     {
       std::vector<Tensor<1, dim>> result;
-      const Scene<dim>           &scene = discretization.scene();
-      if (scene.contact_normal() == ContactNormal::body)
-        {
-          for (const ContactNode<dim> &p : discretization.contact())
-            result.push_back(scene.obstacle().empty()
-                               ? p.normal()
-                               : scene.obstacle().normal(p.point, p.normal()));
-          return result;
-        }
-      const auto normals = normals_of_faces(discretization);
+      const Scene<dim>           &scene      = discretization.scene();
+      const auto                 &conditions = scene.contact_conditions();
+      std::map<unsigned int, std::vector<Tensor<1, dim>>> normals;
+      if (std::any_of(conditions.begin(), conditions.end(), [](const auto &c) {
+            return c.normal == ContactNormal::obstacle;
+          }))
+        normals = normals_of_faces(discretization);
       for (const ContactNode<dim> &p : discretization.contact())
         {
+          const ContactCondition<dim> &condition = conditions[p.condition];
+          if (condition.normal == ContactNormal::body)
+            {
+              result.push_back(
+                condition.obstacle.empty()
+                  ? p.normal()
+                  : condition.obstacle.normal(p.point, p.normal()));
+              continue;
+            }
           const auto &around = normals.at(p.node);
           if (std::any_of(
                 around.begin(), around.end(), [&](const Tensor<1, dim> &n) {

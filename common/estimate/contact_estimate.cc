@@ -13,10 +13,11 @@ namespace Friction
                         RunPart::estimate);
     const Scene<dim>     &scene = discretization.scene();
     EstimatorProblem<dim> problem(scene.materials());
-    problem.body_force           = scene.body_force().get();
-    problem.contact_boundary     = scene.contact_boundary_id();
-    problem.friction_coefficient = scene.friction_coefficient();
-    problem.varying_coefficient  = scene.varying_coefficient().get();
+    problem.body_force = scene.body_force().get();
+    for (const ContactCondition<dim> &condition : scene.contact_conditions())
+      if (condition.has_boundary())
+        problem.contact[condition.boundary_id] = {
+          condition.friction_coefficient, condition.varying_coefficient.get()};
     for (const auto &condition : scene.traction_conditions())
       problem.tractions[condition.boundary_id] = condition.traction.get();
     for (const auto &condition : scene.dirichlet_conditions())

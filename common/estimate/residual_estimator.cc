@@ -710,7 +710,7 @@ namespace Friction
       OnFace<Point<dim>>     places;
       OnFace<Tensor<1, dim>> nodal_tractions;
       const bool             on_contact_boundary =
-        id == problem.contact_boundary && contact.traction != nullptr;
+        problem.contact.count(id) > 0 && contact.traction != nullptr;
       for (unsigned int k = 0; k < n_face_corners; ++k)
         {
           places[k] = values.place(of_face[k]);
@@ -803,10 +803,11 @@ namespace Friction
           slip[k]                = u - (u * n) * n;
         }
 
-      const auto coefficient = [&](const Point<dim> &place) {
-        return problem.varying_coefficient == nullptr
-          ? problem.friction_coefficient
-          : problem.varying_coefficient->value(place);
+      const auto &friction = problem.contact.at(cell->face(f)->boundary_id());
+      const auto  coefficient = [&](const Point<dim> &place) {
+        return friction.varying_coefficient == nullptr
+           ? friction.coefficient
+           : friction.varying_coefficient->value(place);
       };
       double sum = 0.;
       for (unsigned int q = 0; q < face_quadrature.size(); ++q)

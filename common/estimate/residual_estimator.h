@@ -45,15 +45,18 @@ namespace Friction
     /// boundaries that are mentioned nowhere.
     std::map<dealii::types::boundary_id, dealii::ComponentMask> dirichlet;
 
-    /// Boundary id of $\Gamma_S$. Invalid if there is none.
-    dealii::types::boundary_id contact_boundary =
-      dealii::numbers::invalid_boundary_id;
+    /// A coefficient of friction, for the dissipation in the sliding zone.
+    struct ContactFriction
+    {
+      double coefficient = 0.;
 
-    /// Coefficient of friction, for the dissipation in the sliding zone.
-    double friction_coefficient = 0.;
+      /// Where it is not the same everywhere, instead of that; none if not
+      /// given.
+      const dealii::Function<dim> *varying_coefficient = nullptr;
+    };
 
-    /// Where it is not the same everywhere, instead of that; none if not given.
-    const dealii::Function<dim> *varying_coefficient = nullptr;
+    /// The boundary ids of $\Gamma_S$.
+    std::map<dealii::types::boundary_id, ContactFriction> contact;
   };
 
 

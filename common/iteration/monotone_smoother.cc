@@ -201,7 +201,7 @@ namespace Friction
     double bound = 0;
     if (problem.has_friction())
       {
-        if (update_normal_force)
+        if (update_normal_force && !node.bound_is_given)
           x.state.set_normal_force(p,
                                    x.state.in_contact(p)
                                      ? std::max(0., residual * node.normal())

@@ -352,11 +352,12 @@ namespace Friction
 
 
   template <int dim>
-  FieldWriter<dim>::FieldWriter(const RunDirectory      &directory,
-                                const Materials<dim>    &materials,
-                                const types::boundary_id contact_boundary,
-                                const FieldFormat        format,
-                                const bool               principal_stresses)
+  FieldWriter<dim>::FieldWriter(
+    const RunDirectory                 &directory,
+    const Materials<dim>               &materials,
+    const std::set<types::boundary_id> &contact_boundary,
+    const FieldFormat                   format,
+    const bool                          principal_stresses)
     : directory(directory)
     , materials(materials)
     , contact_boundary(contact_boundary)
@@ -629,7 +630,8 @@ namespace Friction
         for (const unsigned int f : cell->face_indices())
           {
             const auto face = cell->face(f);
-            if (!face->at_boundary() || face->boundary_id() != contact_boundary)
+            if (!face->at_boundary() ||
+                contact_boundary.count(face->boundary_id()) == 0)
               continue;
 
             const auto cell_vertices = mapping.get_vertices(cell);

@@ -22,6 +22,7 @@
 #include <common/parameters/parameters.h>
 #include <common/scene/materials.h>
 
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -98,15 +99,15 @@ namespace Friction
     /**
      * @param directory        where the files go.
      * @param materials        from which stresses follow.
-     * @param contact_boundary boundary id of $\Gamma_S$.
+     * @param contact_boundary boundary ids of $\Gamma_S$.
      * @param format           of the files of the body.
      * @param principal_stresses  whether the body has these.
      */
-    FieldWriter(const RunDirectory              &directory,
-                const Materials<dim>            &materials,
-                const dealii::types::boundary_id contact_boundary,
-                const FieldFormat                format = FieldFormat::vtu,
-                const bool                       principal_stresses = false);
+    FieldWriter(const RunDirectory                         &directory,
+                const Materials<dim>                       &materials,
+                const std::set<dealii::types::boundary_id> &contact_boundary,
+                const FieldFormat format             = FieldFormat::vtu,
+                const bool        principal_stresses = false);
 
     /**
      * Write the fields of a level. A collective operation; an error of one
@@ -151,11 +152,11 @@ namespace Friction
                            const TimesAndNames &files,
                            const MPI_Comm       communicator) const;
 
-    const RunDirectory               directory;
-    const Materials<dim>             materials;
-    const dealii::types::boundary_id contact_boundary;
-    const FieldFormat                format;
-    const bool                       principal_stresses;
+    const RunDirectory                         directory;
+    const Materials<dim>                       materials;
+    const std::set<dealii::types::boundary_id> contact_boundary;
+    const FieldFormat                          format;
+    const bool                                 principal_stresses;
 
     TimesAndNames                  body_files;
     TimesAndNames                  contact_files;

@@ -160,7 +160,7 @@ namespace Friction
 
     template <int dim, typename F>
     void
-    for_each_contact_column(const F &column)
+    for_each_contact_column(const bool several, const F &column)
     {
       using R = ContactRecord<dim>;
       column("point", "place of the node", Q::length, &R::point);
@@ -175,6 +175,11 @@ namespace Friction
              Q::stress,
              &R::friction_bound);
       column("state", "0 open, 1 slides, 2 sticks", Q::number, &R::state);
+      if (several)
+        column("section",
+               "of the scene: 1 Contact, 2 Contact 2, ...",
+               Q::number,
+               &R::section);
     }
 
 
@@ -436,11 +441,14 @@ namespace Friction
       {
         const dealii::HDF5::Group all_levels = file.create_group("contact");
         for (const ContactLevel &contact : contact_levels)
-          for_each_contact_column<dim>(ColumnWriter<ContactRecord<dim>>(
-            all_levels.create_group("level_" + two_digits(contact.level)),
-            contact.nodes,
-            dim,
-            &contact == &contact_levels.back() ? &description.units : nullptr));
+          for_each_contact_column<dim>(
+            description.n_contact_boundaries > 1,
+            ColumnWriter<ContactRecord<dim>>(
+              all_levels.create_group("level_" + two_digits(contact.level)),
+              contact.nodes,
+              dim,
+              &contact == &contact_levels.back() ? &description.units
+                                                 : nullptr));
       }
   }
 

@@ -19,8 +19,9 @@ namespace Friction
 {
   /**
    * What is kept of one level of the nested iteration: one value in each
-   * dataset under `/levels`. Forces are those of the whole contact boundary, in
-   * the units of the scene (2D: per unit of thickness).
+   * dataset under `/levels`. Forces are those of the whole contact boundary, of
+   * all its parts if there are several, in the units of the scene (2D: per unit
+   * of thickness); and so are zones.
    */
   struct LevelRecord
   {
@@ -180,6 +181,9 @@ namespace Friction
     /// 0 open, 1 sliding, 2 sticking.
     unsigned int state = 0;
 
+    /// Of the section that is about it: 1 for 'Contact', 2 for 'Contact 2'.
+    unsigned int section = 1;
+
     /// By how much the node has slid along the obstacle: its tangential
     /// displacement if it is in contact, and zero if it is not.
     dealii::Tensor<1, dim>
@@ -194,7 +198,7 @@ namespace Friction
     serialize(Archive &archive, const unsigned int /*version*/)
     {
       archive &dof &point &normal &gap &displacement &force &measure;
-      archive &friction_bound                               &state;
+      archive &friction_bound &state                        &section;
     }
   };
 
@@ -223,6 +227,8 @@ namespace Friction
     std::string           parameters; ///< the full text
     std::string           version;    ///< of the program
     Parameters::UnitNames units = {};
+
+    unsigned int n_contact_boundaries = 1;
   };
 
   /**
@@ -237,9 +243,10 @@ namespace Friction
    * OuterRecord under `/outer` if Algorithm 2 was used; in `/contact/level_NN`
    * the datasets `point`, `normal`, `displacement`, `slip`, `force`
    * (nodes $\times$ dim) and `gap`, `measure`, `friction_bound`, `state`
-   * (one-dimensional). A level without contact nodes has no group there, since
-   * HDF5 through deal.II has no empty datasets; for the same reason `/cycles`
-   * exists only once there was a cycle.
+   * (one-dimensional), and `section` if there are several contact boundaries, 2
+   * for nodes of 'Contact 2'. A level without contact nodes has no group there,
+   * since HDF5 through deal.II has no empty datasets; for the same reason
+   * `/cycles` exists only once there was a cycle.
    *
    * With `Output/Forces` there are under `/forces` `level`, a dataset for each
    * of the forces on the body under its name (levels $\times$ dim), those of

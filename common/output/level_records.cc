@@ -179,6 +179,8 @@ namespace Friction
         row.normal  = node.normal();
         row.gap     = node.gap;
         row.measure = node.measure;
+        row.section =
+          discretization.scene().contact_conditions()[node.condition].number;
         for (unsigned int d = 0; d < dim; ++d)
           row.displacement[d] = displacement.local_element(dim * node.node + d);
         row.force = contact_force(node, report.residual);

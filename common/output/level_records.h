@@ -50,9 +50,10 @@ namespace Friction
    *   scene is symmetric, the latter cancel, and a norm near zero does not mean
    *   that there is no friction;
    * - the measure of the zones of contact and stick. In two dimensions their
-   *   half-widths are half of it, and sensible only if the zone is connected;
-   *   in three they are the radii of circles of that area. The edge of a zone
-   *   is not known better than to a cell.
+   *   half-widths are half of it, and sensible only if the zone is connected,
+   *   not those of several contact boundaries, over which all of this is
+   * summed; in three they are the radii of circles of that area. The edge of a
+   * zone is not known better than to a cell.
    *
    * The number of cycles is that of all outer iterations; there is one of these
    * unless Algorithm 2 is used. The estimated error and the seconds are left to

@@ -11,6 +11,7 @@
 #include <boost/archive/binary_oarchive.hpp>
 
 #include <cmath>
+#include <set>
 #include <sstream>
 
 namespace Friction
@@ -37,6 +38,19 @@ namespace Friction
         archive &format &dimension &mesh &parameters;
       }
     };
+
+
+
+    template <int dim>
+    std::set<types::boundary_id>
+    contact_boundaries(const Scene<dim> &scene)
+    {
+      std::set<types::boundary_id> ids;
+      for (const ContactCondition<dim> &condition : scene.contact_conditions())
+        if (condition.has_boundary())
+          ids.insert(condition.boundary_id);
+      return ids;
+    }
   } // namespace
 
 
@@ -56,13 +70,16 @@ namespace Friction
                                           : Console::Times::hidden,
                   parameters.output.verbosity == Verbosity::quiet,
                   communicator)
-    , history(
-        directory.file("history.h5"),
-        {parameters.name, parameters.text, version, parameters.output.units},
-        communicator)
+    , history(directory.file("history.h5"),
+              {parameters.name,
+               parameters.text,
+               version,
+               parameters.output.units,
+               scene.n_contact_boundaries()},
+              communicator)
     , fields(directory,
              scene.materials(),
-             scene.contact_boundary_id(),
+             contact_boundaries(scene),
              parameters.output.format,
              parameters.output.principal_stresses)
     , verification(directory)
@@ -93,6 +110,14 @@ namespace Friction
     const RunScope part(communicator, RunPart::records);
     if (history.levels().back().contact_nodes > 0)
       the_console.note(describe_quantities(history.levels().back()));
+    const unsigned int n_boundaries =
+      discretization.scene().n_contact_boundaries();
+    if (n_boundaries > 1 && history.levels().back().contact_nodes > 0)
+      the_console.note("These are sums over " + std::to_string(n_boundaries) +
+                       " contact boundaries, and the largest pressure on any" +
+                       (last_forces.empty()
+                          ? "; 'Output/Forces' has the forces on each."
+                          : "."));
     if (!last_forces.empty())
       the_console.note(last_forces);
     for (const std::string &warning :

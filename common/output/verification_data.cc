@@ -11,6 +11,7 @@
 #include <boost/serialization/string.hpp>
 #include <boost/serialization/vector.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -315,19 +316,50 @@ namespace Friction
                 const Scene<dim>                      &scene,
                 const std::vector<ContactRecord<dim>> &own_contact)
     {
+      const auto &conditions = scene.contact_conditions();
+      const auto  any        = [&](const auto &has) {
+        return std::any_of(conditions.begin(), conditions.end(), has);
+      };
+      const bool any_varies =
+        any([](const auto &c) { return c.varying_coefficient != nullptr; });
+      const bool any_bound =
+        any([](const auto &c) { return c.friction_bound != nullptr; });
       for (const ContactRecord<dim> &record : own_contact)
         {
+          const ContactCondition<dim> &condition = *std::find_if(
+            conditions.begin(), conditions.end(), [&](const auto &c) {
+              return c.number == record.section;
+            });
+          if (conditions.size() > 1)
+            tables.add_numbers("contact_sections", {record.section});
+
           tables.add_numbers("contact_nodes",
                              {static_cast<unsigned int>(record.dof / dim)});
           tables.add_numbers("contact_states", {record.state});
           tables.add_vector("contact_normals", record.normal);
-          if (scene.varying_coefficient() != nullptr)
-            tables.add_value("friction_coefficients",
-                             scene.varying_coefficient()->value(record.point));
-          if (scene.friction_bound() != nullptr)
+          if (any_varies)
+            tables.add_value(
+              "friction_coefficients",
+              condition.varying_coefficient == nullptr
+                ? condition.friction_coefficient
+                : condition.varying_coefficient->value(record.point));
+          if (any_bound)
             tables.add_value("friction_bounds",
-                             scene.friction_bound()->value(record.point));
+                             condition.friction_bound == nullptr
+                               ? 0.
+                               : condition.friction_bound->value(record.point));
         }
+    }
+
+
+
+    // What is behind the names of what belongs to 'Contact 2'.
+    template <int dim>
+    std::string
+    suffix_of(const ContactCondition<dim> &condition)
+    {
+      return condition.number == 1 ? ""
+                                   : '_' + std::to_string(condition.number);
     }
 
 
@@ -352,21 +384,22 @@ namespace Friction
 
     template <int dim>
     void
-    add_obstacle(ProblemTables &tables, const Obstacle<dim> &obstacle)
+    add_obstacle(ProblemTables &tables, const ContactCondition<dim> &condition)
     {
-      for (const auto &plane : obstacle.half_spaces())
+      const std::string suffix = suffix_of(condition);
+      for (const auto &plane : condition.obstacle.half_spaces())
         {
-          tables.add_vector<dim>("plane_points", plane.point);
-          tables.add_vector("plane_normals", plane.normal);
+          tables.add_vector<dim>("plane_points" + suffix, plane.point);
+          tables.add_vector("plane_normals" + suffix, plane.normal);
         }
-      for (const auto &rod : obstacle.circular_rods())
+      for (const auto &rod : condition.obstacle.circular_rods())
         {
-          tables.add_vector<dim>("rod_centers", rod.center);
-          tables.add_vector("rod_axes", rod.axis);
-          tables.add_value("rod_radii", rod.radius);
-          tables.add_value("rod_lengths",
+          tables.add_vector<dim>("rod_centers" + suffix, rod.center);
+          tables.add_vector("rod_axes" + suffix, rod.axis);
+          tables.add_value("rod_radii" + suffix, rod.radius);
+          tables.add_value("rod_lengths" + suffix,
                            std::isfinite(rod.length) ? rod.length : 0.);
-          tables.add_value("rod_sides", rod.is_hole ? -1. : 1.);
+          tables.add_value("rod_sides" + suffix, rod.is_hole ? -1. : 1.);
         }
     }
 
@@ -378,10 +411,7 @@ namespace Friction
                      const unsigned int  level,
                      const Scene<dim>   &scene)
     {
-      const Material   &material = scene.materials().base();
-      const FrictionLaw law      = scene.friction_law();
-      const bool        has_boundary =
-        scene.contact_boundary_id() != numbers::invalid_boundary_id;
+      const Material &material = scene.materials().base();
       file.set_attribute("dimension", dim);
       file.set_attribute("level", level);
       file.set_attribute("youngs_modulus", material.youngs_modulus());
@@ -391,19 +421,26 @@ namespace Friction
         std::string(material.volumetric_strain() == VolumetricStrain::mean
                       ? "mean"
                       : "pointwise"));
-      file.set_attribute(
-        "contact_boundary",
-        has_boundary ? static_cast<int>(scene.contact_boundary_id()) : -1);
-      file.set_attribute(
-        "contact_normal",
-        std::string(
-          scene.contact_normal() == ContactNormal::body ? "body" : "obstacle"));
-      file.set_attribute("friction_law",
-                         std::string(law == FrictionLaw::none ? "none"
-                                       : law == FrictionLaw::tresca
-                                       ? "Tresca"
-                                       : "Coulomb"));
-      file.set_attribute("friction_coefficient", scene.friction_coefficient());
+      for (const ContactCondition<dim> &contact : scene.contact_conditions())
+        {
+          const std::string suffix = suffix_of(contact);
+          const FrictionLaw law    = contact.friction_law;
+          file.set_attribute("contact_boundary" + suffix,
+                             contact.has_boundary()
+                               ? static_cast<int>(contact.boundary_id)
+                               : -1);
+          file.set_attribute("contact_normal" + suffix,
+                             std::string(contact.normal == ContactNormal::body
+                                           ? "body"
+                                           : "obstacle"));
+          file.set_attribute("friction_law" + suffix,
+                             std::string(law == FrictionLaw::none ? "none"
+                                           : law == FrictionLaw::tresca
+                                           ? "Tresca"
+                                           : "Coulomb"));
+          file.set_attribute("friction_coefficient" + suffix,
+                             contact.friction_coefficient);
+        }
     }
 
 
@@ -433,7 +470,8 @@ namespace Friction
            Utilities::MPI::gather(communicator, own))
         all.append(part);
       add_materials(all, scene.materials());
-      add_obstacle(all, scene.obstacle());
+      for (const ContactCondition<dim> &contact : scene.contact_conditions())
+        add_obstacle(all, contact);
 
       // HDF5 does not say in one sentence that the disk is full, see History.
       demand_space(name,

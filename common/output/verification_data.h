@@ -23,7 +23,8 @@ namespace Friction
    * `poisson_ratio`, `volumetric_strain` (`pointwise` or `mean`);
    * `contact_boundary` (boundary id, -1 for none), `contact_normal` (`body` or
    * `obstacle`), `friction_law` (`none`, `Tresca` or `Coulomb`),
-   * `friction_coefficient` (zero where it varies).
+   * `friction_coefficient` (zero where it varies). If there is a section
+   * 'Contact 2', the same four with `_2` behind their names, and so on.
    *
    * Datasets, each node of the leaf mesh having the number of its row in
    * `vertices`. Those that would be empty are not there.
@@ -46,6 +47,8 @@ namespace Friction
    * - `contact_nodes`: the nodes that may touch;
    * - `contact_normals`: dim components of their unit normals;
    * - `contact_states`: 0 open, 1 sliding, 2 sticking;
+   * - `contact_sections`: where there are several, the sections that they
+   *   belong to, 1 for 'Contact', 2 for 'Contact 2', ...;
    * - `friction_coefficients`: with Coulomb's law, their coefficients, where
    *   these vary;
    * - `friction_bounds`: with Tresca's law, their largest tangential stress;
@@ -54,7 +57,7 @@ namespace Friction
    * - `rod_centers`, `rod_axes`: a point of each rod, and the direction of its
    *   axis (zero in two dimensions);
    * - `rod_radii`, `rod_lengths`: lengths; one that is not positive is
-   * infinite.
+   *   infinite. The same with `_2` is what 'Contact 2' may touch.
    *
    * Gauss points are numbered with the first coordinate of the cell or the face
    * running fastest. A scene that is turned is written as it has been turned.

@@ -166,8 +166,8 @@ namespace Friction
     template <int dim>
     void
     warn_of_polygons(const parallel::distributed::Triangulation<dim> &mesh,
-                     const types::boundary_id  contact_id,
-                     std::vector<std::string> &warnings)
+                     const Scene<dim>                                &scene,
+                     std::vector<std::string>                        &warnings)
     {
       const FE_Q<dim>   element(1);
       FEFaceValues<dim> values(
@@ -177,7 +177,7 @@ namespace Friction
       for (const auto &cell : mesh.cell_iterators_on_level(0))
         for (const unsigned int f : cell->face_indices())
           if (cell->at_boundary(f) &&
-              cell->face(f)->boundary_id() == contact_id)
+              scene.contact_on(cell->face(f)->boundary_id()) != nullptr)
             {
               values.reinit(cell, f);
               for (const unsigned int v : cell->face(f)->vertex_indices())
@@ -209,6 +209,20 @@ namespace Friction
                            "contact stress has "
                            "peaks; a finer mesh file has flatter ones.");
     }
+
+
+
+    // Whether there is an obstacle and a boundary to touch it.
+    template <int dim>
+    bool
+    may_touch(const Scene<dim> &scene)
+    {
+      const auto &conditions = scene.contact_conditions();
+      return std::any_of(
+        conditions.begin(), conditions.end(), [](const auto &condition) {
+          return condition.has_boundary() && !condition.obstacle.empty();
+        });
+    }
   } // namespace
 
 
@@ -233,19 +247,25 @@ namespace Friction
     const bool is_refined = parameters.refinement.initial_refinements > 0 ||
       parameters.refinement.levels > 0;
     if (parameters.scene.geometry == GeometryKind::mesh_file && is_refined)
-      warn_of_polygons(mesh, scene.contact_boundary_id(), warnings);
+      warn_of_polygons(mesh, scene, warnings);
 
-    if (scene.obstacle().empty() ||
-        scene.contact_boundary_id() == numbers::invalid_boundary_id)
+    if (!may_touch(scene))
       return warnings;
-    const unsigned int n_nodes =
-      Utilities::MPI::sum(discretization.contact().size(), communicator);
-    if (n_nodes == 0)
-      warnings.push_back(
-        "Warning: no node of the contact boundary faces the obstacle, so there "
-        "will be no contact; does the normal of the obstacle point into it, "
-        "and "
-        "is 'Contact/Boundary id' the right one?");
+    const auto               &conditions = scene.contact_conditions();
+    std::vector<unsigned int> n_nodes(conditions.size(), 0);
+    for (const ContactNode<dim> &p : discretization.contact())
+      ++n_nodes[p.condition];
+    for (unsigned int i = 0; i < conditions.size(); ++i)
+      if (conditions[i].has_boundary() && !conditions[i].obstacle.empty() &&
+          Utilities::MPI::sum(n_nodes[i], communicator) == 0)
+        warnings.push_back(
+          "Warning: no node of the contact boundary" +
+          (conditions.size() == 1 ? std::string()
+                                  : " of '" + conditions[i].section() + "'") +
+          " faces the obstacle, so there will be no contact" +
+          (conditions.size() == 1 ? "" : " there") +
+          "; does the normal of the obstacle point into it, and is '" +
+          conditions[i].section() + "/Boundary id' the right one?");
 
     double     depth = 0;
     Point<dim> where;
@@ -276,9 +296,8 @@ namespace Friction
                    const VectorType          &displacement,
                    const ContactState        &state)
   {
-    const Scene<dim>    &scene    = discretization.scene();
-    const Obstacle<dim> &obstacle = scene.obstacle();
-    const MPI_Comm communicator   = discretization.constraints().communicator();
+    const Scene<dim> &scene     = discretization.scene();
+    const MPI_Comm communicator = discretization.constraints().communicator();
 
     ContactGeometry result;
     const auto     &contact = discretization.contact();
@@ -292,12 +311,16 @@ namespace Friction
         if (!state.in_contact(p))
           continue;
         ++result.n_contact;
+        const ContactCondition<dim> &condition =
+          scene.contact_conditions()[contact[p].condition];
+        const Obstacle<dim> &obstacle = condition.obstacle;
         if (obstacle.empty())
           continue;
-        result.angle = std::max(
-          result.angle,
-          degrees(contact[p].normal() *
-                  obstacle.normal(contact[p].point, contact[p].normal())));
+        if (condition.normal == ContactNormal::body)
+          result.angle = std::max(
+            result.angle,
+            degrees(contact[p].normal() *
+                    obstacle.normal(contact[p].point, contact[p].normal())));
         const Point<dim> moved = contact[p].point + u;
         const double     distance =
           obstacle.gap(moved, obstacle.normal(moved, contact[p].normal()));
@@ -334,14 +357,13 @@ namespace Friction
         "Warning: the largest displacement is " + number(g.displacement) +
         " in a body of size " + number(g.size) +
         "; strains and displacements are supposed to be small here.");
-    if (scene.obstacle().empty() ||
-        scene.contact_boundary_id() == numbers::invalid_boundary_id)
+    if (!may_touch(scene))
       return warnings;
     if (g.n_contact == 0)
       warnings.push_back("Warning: in the end no node is in contact with the "
                          "obstacle; do the loads push the body towards it, and "
                          "does 'Obstacle/Normal' point into the obstacle?");
-    if (scene.contact_normal() == ContactNormal::body && g.angle > large_angle)
+    if (g.angle > large_angle)
       warnings.push_back(
         "Warning: nodes are in contact whose normal is up to " +
         number(g.angle) +

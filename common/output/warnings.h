@@ -36,8 +36,9 @@ namespace Friction
     /// Over all processes.
     unsigned int n_contact = 0;
 
-    /// The largest angle between the normal in which a node in contact has its
-    /// gap and the direction straight to the obstacle; degrees.
+    /// Where gaps are measured along the normals of the body: the largest angle
+    /// between that of a node in contact and the direction straight to the
+    /// obstacle; degrees.
     double angle = 0;
 
     /// How far a node in contact is from the obstacle when it is displaced,

@@ -1,5 +1,8 @@
 #include <common/parameters/parameter_entries.h>
 
+#include <algorithm>
+#include <cctype>
+
 namespace Friction
 {
   using namespace dealii;
@@ -263,7 +266,9 @@ namespace Friction
        text,
        "The part of the boundary that may touch the obstacle, an id or the "
        "name "
-       "of a group of the mesh file; -1 for none."},
+       "of a group of the mesh file; -1 for none. Where another part may touch "
+       "something else, or by another law, sections 'Contact 2' and 'Obstacle "
+       "2' say so, with the entries of 'Contact' and 'Obstacle'; and so on."},
       {"Contact",
        "Friction law",
        "Coulomb",
@@ -534,5 +539,25 @@ namespace Friction
        "What the console shows: only warnings, a row per level, and progress "
        "inside the levels."}};
     return table;
+  }
+
+
+
+  NumberedSection
+  numbered_section(const std::string &section)
+  {
+    for (const std::string base : {"Contact", "Obstacle"})
+      if (section.compare(0, base.size() + 1, base + " ") == 0)
+        {
+          const std::string digits    = section.substr(base.size() + 1);
+          const bool        is_number = !digits.empty() && digits.size() <= 2 &&
+            digits[0] != '0' &&
+            std::all_of(digits.begin(),
+                        digits.end(),
+                        [](const unsigned char c) { return std::isdigit(c); });
+          if (is_number && digits != "1")
+            return {base, static_cast<unsigned int>(std::stoi(digits))};
+        }
+    return {section, 1};
   }
 } // namespace Friction

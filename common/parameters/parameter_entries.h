@@ -29,6 +29,19 @@ namespace Friction
 
   /** Everything that a scene file may say, in the order of the sections. */
   const std::vector<ParameterEntry> &parameter_entries();
+
+  /**
+   * A section that there may be several of: 'Contact 2' and 'Obstacle 2' have
+   * the entries of 'Contact' and 'Obstacle', and so have all up to 99.
+   */
+  struct NumberedSection
+  {
+    std::string  base;       ///< whose entries it has
+    unsigned int number = 1; ///< 1 if it has none
+  };
+
+  /** Any other section is its own base. */
+  NumberedSection numbered_section(const std::string &section);
 } // namespace Friction
 
 #endif

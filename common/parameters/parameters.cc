@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <memory>
+#include <set>
 #include <sstream>
 
 namespace Friction
@@ -35,6 +36,50 @@ namespace Friction
                             entry.documentation);
           prm.leave_subsection();
         }
+    }
+
+
+
+    // 'Contact', or 'Contact 2'.
+    std::string
+    section_name(const std::string &base, const unsigned int number)
+    {
+      return number == 1 ? base : base + ' ' + std::to_string(number);
+    }
+
+
+
+    // Sections 'Contact 2' and 'Obstacle 2', as far as a scene has any.
+    void
+    declare_further_contact(ParameterHandler &prm, const unsigned int number)
+    {
+      for (const ParameterEntry &entry : parameter_entries())
+        if (entry.section == "Contact" || entry.section == "Obstacle")
+          {
+            prm.enter_subsection(section_name(entry.section, number));
+            prm.declare_entry(entry.name,
+                              entry.default_value,
+                              *entry.pattern,
+                              entry.documentation);
+            prm.leave_subsection();
+          }
+    }
+
+
+
+    // The entry that a path means, or null. 'Contact 2/Boundary id' is that of
+    // 'Contact/Boundary id'.
+    const ParameterEntry *
+    find_entry(const std::string &path)
+    {
+      const std::string section = path.substr(0, path.find('/'));
+      const std::string meant =
+        numbered_section(section).base + path.substr(section.size());
+      const auto entry = std::find_if(
+        parameter_entries().begin(),
+        parameter_entries().end(),
+        [&](const ParameterEntry &e) { return e.path() == meant; });
+      return entry == parameter_entries().end() ? nullptr : &*entry;
     }
 
 
@@ -146,11 +191,8 @@ namespace Friction
           const std::string &value,
           const std::string &where)
       {
-        const auto entry = std::find_if(
-          parameter_entries().begin(),
-          parameter_entries().end(),
-          [&](const ParameterEntry &e) { return e.path() == path; });
-        if (entry == parameter_entries().end())
+        const ParameterEntry *const entry = find_entry(path);
+        if (entry == nullptr)
           {
             std::vector<std::string> known;
             for (const ParameterEntry &e : parameter_entries())
@@ -162,10 +204,22 @@ namespace Friction
           throw InputError(where + ": '" + excerpt(value) +
                            "' is no value for '" + path + "'; give " +
                            wanted(*entry->pattern) + ".");
-        prm.enter_subsection(entry->section);
+        const std::string  section = path.substr(0, path.find('/'));
+        const unsigned int number  = numbered_section(section).number;
+        if (number > 1 && further.insert(number).second)
+          declare_further_contact(prm, number);
+        prm.enter_subsection(section);
         prm.set(entry->name, value);
         prm.leave_subsection();
         origin[path] = where;
+      }
+
+      // The numbers of sections 'Contact 2', ... or 'Obstacle 2', ... in which
+      // something has been set.
+      const std::set<unsigned int> &
+      further_contacts() const
+      {
+        return further;
       }
 
       std::string
@@ -224,11 +278,8 @@ namespace Friction
       bool
       is_changed(const std::string &path)
       {
-        const auto entry = std::find_if(
-          parameter_entries().begin(),
-          parameter_entries().end(),
-          [&](const ParameterEntry &e) { return e.path() == path; });
-        return origin.count(path) > 0 && get(path) != entry->default_value;
+        return origin.count(path) > 0 &&
+          get(path) != find_entry(path)->default_value;
       }
 
       // Whether some value uses a word, as expressions do.
@@ -264,6 +315,7 @@ namespace Friction
     private:
       ParameterHandler                   prm;
       std::map<std::string, std::string> origin;
+      std::set<unsigned int>             further;
     };
 
 
@@ -324,8 +376,9 @@ namespace Friction
                 throw InputError(where + ": section '" + excerpt(name) +
                                  "' begins inside section '" + section +
                                  "'; close that one with 'end' first.");
-              if (std::find(sections.begin(), sections.end(), name) ==
-                  sections.end())
+              if (std::find(sections.begin(),
+                            sections.end(),
+                            numbered_section(name).base) == sections.end())
                 throw InputError(where + ": there is no section '" +
                                  excerpt(name) + "'; did you mean '" +
                                  nearest(name, sections) + "'?");
@@ -626,6 +679,159 @@ namespace Friction
 
 
 
+    std::vector<std::vector<double>>
+    read_vectors(const std::string &path,
+                 Values            &values,
+                 const Expressions &expressions)
+    {
+      std::vector<std::vector<double>> vectors;
+      for (const std::string &part : split(values.get(path), ';'))
+        vectors.push_back(read_vector(part, values.subject(path), expressions));
+      return vectors;
+    }
+
+
+
+    // What is in the way, from a section of that name.
+    void
+    read_obstacle(const std::string    &section,
+                  Values               &values,
+                  const Expressions    &expressions,
+                  Parameters::Obstacle &obstacle)
+    {
+      const auto path = [&](const std::string &name) {
+        return section + '/' + name;
+      };
+      const auto vector_of = [&](const std::string &name) {
+        return read_vector(
+          values.get(path(name)), values.subject(path(name)), expressions);
+      };
+
+      const std::string kind = values.get(path("Kind"));
+      obstacle.kind          = (kind == "none"      ? ObstacleKind::none
+                                  : kind == "plane" ? ObstacleKind::plane
+                                  : kind == "rods"  ? ObstacleKind::rods
+                                  : kind == "balls" ? ObstacleKind::balls
+                                                    : ObstacleKind::surface);
+      obstacle.point         = vector_of("Point");
+      obstacle.normal        = vector_of("Normal");
+      obstacle.centers  = read_vectors(path("Centers"), values, expressions);
+      obstacle.axes     = read_vectors(path("Axes"), values, expressions);
+      obstacle.is_hole  = values.get(path("Side")) == "inside";
+      obstacle.function = values.get(path("Function"));
+      for (const auto &radius :
+           read_vectors(path("Radius"), values, expressions))
+        {
+          if (radius.size() != 1 ||
+              !(radius[0] >= 1. / largest_number &&
+                radius[0] <= largest_number))
+            throw InputError(values.subject(path("Radius")) + " is '" +
+                             excerpt(values.get(path("Radius"))) +
+                             "', but radii must be positive numbers between "
+                             "1e-30 and 1e30, separated by ';'.");
+          obstacle.radii.push_back(radius[0]);
+        }
+      if (!values.get(path("Length")).empty())
+        {
+          obstacle.length = expressions.evaluate(
+            values.get(path("Length")), values.subject(path("Length")));
+          if (!(obstacle.length > 0.))
+            throw InputError(values.subject(path("Length")) + " is '" +
+                             excerpt(values.get(path("Length"))) +
+                             "', but it must be positive.");
+        }
+      const bool is_round = obstacle.kind == ObstacleKind::rods ||
+        obstacle.kind == ObstacleKind::balls;
+      if (is_round && obstacle.centers.empty())
+        throw InputError(values.subject(path("Kind")) + " is '" + kind +
+                         "', but there are none; set '" + path("Centers") +
+                         "'.");
+      if (is_round && obstacle.radii.size() != 1 &&
+          obstacle.radii.size() != obstacle.centers.size())
+        throw InputError(values.subject(path("Radius")) + " has " +
+                         counted(obstacle.radii.size(), "number", "numbers") +
+                         ", but there are " +
+                         std::to_string(obstacle.centers.size()) + " " + kind +
+                         "; give one for each, or one for all.");
+      if (obstacle.kind == ObstacleKind::surface && obstacle.function.empty())
+        throw InputError(values.subject(path("Kind")) +
+                         " is 'surface', but there is none; set '" +
+                         path("Function") + "'.");
+      const auto is_zero = [](const std::vector<double> &v) {
+        return std::all_of(
+          v.begin(), v.end(), [](const double c) { return c == 0.; });
+      };
+      if (!obstacle.normal.empty() && is_zero(obstacle.normal))
+        throw InputError(values.subject(path("Normal")) +
+                         " is zero; give a direction.");
+      if (std::any_of(obstacle.axes.begin(), obstacle.axes.end(), is_zero))
+        throw InputError(values.subject(path("Axes")) +
+                         " contains a zero vector; give directions.");
+    }
+
+
+
+    // How one may touch it. The coefficient of the first section is read before
+    // all else.
+    void
+    read_contact(const std::string   &section,
+                 Values              &values,
+                 Parameters::Contact &contact)
+    {
+      const auto path = [&](const std::string &name) {
+        return section + '/' + name;
+      };
+
+      const std::string law = values.get(path("Friction law"));
+      contact.boundary      = values.get(path("Boundary id"));
+      if (contact.boundary == "-1")
+        contact.boundary.clear();
+      contact.friction_law   = (law == "none"       ? FrictionLaw::none
+                                  : law == "Tresca" ? FrictionLaw::tresca
+                                                    : FrictionLaw::coulomb);
+      contact.friction_bound = values.get(path("Friction bound"));
+      contact.ignore_prescribed_penetration =
+        values.flag(path("Ignore prescribed penetration"));
+      contact.normal = (values.get(path("Contact normal")) == "body"
+                          ? ContactNormal::body
+                          : ContactNormal::obstacle);
+    }
+
+
+
+    Parameters::FurtherContact
+    read_further_contact(const unsigned int number,
+                         Values            &values,
+                         const Expressions &expressions)
+    {
+      Parameters::FurtherContact result;
+      result.number = number;
+      read_obstacle(
+        section_name("Obstacle", number), values, expressions, result.obstacle);
+      const std::string section = section_name("Contact", number);
+      read_contact(section, values, result.contact);
+
+      const std::string name = section + "/Friction coefficient";
+      if (Patterns::Double().match(values.get(name)))
+        {
+          result.contact.friction_coefficient = values.number(name);
+          if (!(result.contact.friction_coefficient >= 0.))
+            throw InputError(values.subject(name) + " is " +
+                             excerpt(values.get(name)) +
+                             ", but it must not be negative.");
+        }
+      else
+        {
+          result.contact.varying_coefficient = values.get(name);
+          parse_function<3>({result.contact.varying_coefficient},
+                            expressions,
+                            values.subject(name));
+        }
+      return result;
+    }
+
+
+
     // Entries that have been set, and that nothing uses in this scene: most
     // likely another entry is not what it should be.
     std::vector<std::string>
@@ -659,21 +865,31 @@ namespace Friction
       for (const std::string name : {"Length", "Layers"})
         only_with("Scene/" + name, geometry, {"cylinder", "half cylinder"});
       only_with("Scene/Coarse grid", geometry, {"cylinder"});
-      for (const std::string name : {"Point", "Normal"})
-        only_with("Obstacle/" + name, "Obstacle/Kind", {"plane"});
-      for (const std::string name : {"Centers", "Radius", "Side"})
-        only_with("Obstacle/" + name, "Obstacle/Kind", {"rods", "balls"});
-      for (const std::string name : {"Axes", "Length"})
-        only_with("Obstacle/" + name, "Obstacle/Kind", {"rods"});
-      only_with("Obstacle/Function", "Obstacle/Kind", {"surface"});
-      only_with("Contact/Contact normal",
-                "Obstacle/Kind",
-                {"plane", "rods", "balls", "surface"});
-      only_with("Contact/Friction bound", "Contact/Friction law", {"Tresca"});
-      // Expressions may use it as F.
-      if (!values.any_uses("F"))
-        only_with(
-          "Contact/Friction coefficient", "Contact/Friction law", {"Coulomb"});
+      std::vector<unsigned int> numbers = {1};
+      numbers.insert(numbers.end(),
+                     values.further_contacts().begin(),
+                     values.further_contacts().end());
+      for (const unsigned int number : numbers)
+        {
+          const std::string obstacle = section_name("Obstacle", number) + '/';
+          const std::string contact  = section_name("Contact", number) + '/';
+          const std::string kind     = obstacle + "Kind";
+          for (const std::string name : {"Point", "Normal"})
+            only_with(obstacle + name, kind, {"plane"});
+          for (const std::string name : {"Centers", "Radius", "Side"})
+            only_with(obstacle + name, kind, {"rods", "balls"});
+          for (const std::string name : {"Axes", "Length"})
+            only_with(obstacle + name, kind, {"rods"});
+          only_with(obstacle + "Function", kind, {"surface"});
+          only_with(contact + "Contact normal",
+                    kind,
+                    {"plane", "rods", "balls", "surface"});
+          const std::string law = contact + "Friction law";
+          only_with(contact + "Friction bound", law, {"Tresca"});
+          // Expressions may use the first one as F.
+          if (number > 1 || !values.any_uses("F"))
+            only_with(contact + "Friction coefficient", law, {"Coulomb"});
+        }
       for (const std::string name : {"Marking", "Contact zone"})
         only_with("Refinement/" + name, "Refinement/Strategy", {"adaptive"});
       only_with("Output/Format", "Output/Fields", {"true", "yes"});
@@ -829,13 +1045,6 @@ namespace Friction
       return read_vector(
         values.get(path), values.subject(path), parameters.expressions);
     };
-    const auto vectors_of = [&](const std::string &path) {
-      std::vector<std::vector<double>> vectors;
-      for (const std::string &part : split(values.get(path), ';'))
-        vectors.push_back(
-          read_vector(part, values.subject(path), parameters.expressions));
-      return vectors;
-    };
 
     {
       const std::string geometry = values.get("Scene/Geometry");
@@ -890,66 +1099,8 @@ namespace Friction
       scene.exact_displacement = values.get("Scene/Exact displacement");
     }
 
-    {
-      const std::string kind     = values.get("Obstacle/Kind");
-      auto             &obstacle = parameters.obstacle;
-      obstacle.kind              = (kind == "none"      ? ObstacleKind::none
-                                      : kind == "plane" ? ObstacleKind::plane
-                                      : kind == "rods"  ? ObstacleKind::rods
-                                      : kind == "balls" ? ObstacleKind::balls
-                                                        : ObstacleKind::surface);
-      obstacle.point             = vector_of("Obstacle/Point");
-      obstacle.normal            = vector_of("Obstacle/Normal");
-      obstacle.centers           = vectors_of("Obstacle/Centers");
-      obstacle.axes              = vectors_of("Obstacle/Axes");
-      obstacle.is_hole           = values.get("Obstacle/Side") == "inside";
-      obstacle.function          = values.get("Obstacle/Function");
-      for (const auto &radius : vectors_of("Obstacle/Radius"))
-        {
-          if (radius.size() != 1 || !(radius[0] >= 1. / largest_number &&
-                                      radius[0] <= largest_number))
-            throw InputError(values.subject("Obstacle/Radius") + " is '" +
-                             excerpt(values.get("Obstacle/Radius")) +
-                             "', but radii must be positive numbers between "
-                             "1e-30 and 1e30, separated by ';'.");
-          obstacle.radii.push_back(radius[0]);
-        }
-      if (!values.get("Obstacle/Length").empty())
-        {
-          obstacle.length = parameters.expressions.evaluate(
-            values.get("Obstacle/Length"), values.subject("Obstacle/Length"));
-          if (!(obstacle.length > 0.))
-            throw InputError(values.subject("Obstacle/Length") + " is '" +
-                             excerpt(values.get("Obstacle/Length")) +
-                             "', but it must be positive.");
-        }
-      const bool is_round = obstacle.kind == ObstacleKind::rods ||
-        obstacle.kind == ObstacleKind::balls;
-      if (is_round && obstacle.centers.empty())
-        throw InputError(values.subject("Obstacle/Kind") + " is '" + kind +
-                         "', but there are none; set 'Obstacle/Centers'.");
-      if (is_round && obstacle.radii.size() != 1 &&
-          obstacle.radii.size() != obstacle.centers.size())
-        throw InputError(values.subject("Obstacle/Radius") + " has " +
-                         counted(obstacle.radii.size(), "number", "numbers") +
-                         ", but there are " +
-                         std::to_string(obstacle.centers.size()) + " " + kind +
-                         "; give one for each, or one for all.");
-      if (obstacle.kind == ObstacleKind::surface && obstacle.function.empty())
-        throw InputError(values.subject("Obstacle/Kind") +
-                         " is 'surface', but there is none; set "
-                         "'Obstacle/Function'.");
-      const auto is_zero = [](const std::vector<double> &v) {
-        return std::all_of(
-          v.begin(), v.end(), [](const double c) { return c == 0.; });
-      };
-      if (!obstacle.normal.empty() && is_zero(obstacle.normal))
-        throw InputError(values.subject("Obstacle/Normal") +
-                         " is zero; give a direction.");
-      if (std::any_of(obstacle.axes.begin(), obstacle.axes.end(), is_zero))
-        throw InputError(values.subject("Obstacle/Axes") +
-                         " contains a zero vector; give directions.");
-    }
+    read_obstacle(
+      "Obstacle", values, parameters.expressions, parameters.obstacle);
 
     {
       auto &conditions        = parameters.boundary_conditions;
@@ -964,23 +1115,11 @@ namespace Friction
       conditions.body_force = values.get("Boundary conditions/Body force");
     }
 
-    {
-      const std::string law     = values.get("Contact/Friction law");
-      auto             &contact = parameters.contact;
-      contact.boundary          = values.get("Contact/Boundary id");
-      if (contact.boundary == "-1")
-        contact.boundary.clear();
-      contact.friction_law         = (law == "none"       ? FrictionLaw::none
-                                        : law == "Tresca" ? FrictionLaw::tresca
-                                                          : FrictionLaw::coulomb);
-      contact.friction_coefficient = F;
-      contact.friction_bound       = values.get("Contact/Friction bound");
-      contact.ignore_prescribed_penetration =
-        values.flag("Contact/Ignore prescribed penetration");
-      contact.normal = (values.get("Contact/Contact normal") == "body"
-                          ? ContactNormal::body
-                          : ContactNormal::obstacle);
-    }
+    read_contact("Contact", values, parameters.contact);
+    parameters.contact.friction_coefficient = F;
+    for (const unsigned int number : values.further_contacts())
+      parameters.further_contacts.push_back(
+        read_further_contact(number, values, parameters.expressions));
 
     {
       auto &refinement    = parameters.refinement;
@@ -1053,7 +1192,7 @@ namespace Friction
                                               : FieldFormat::hdf5);
       output.principal_stresses = values.flag("Output/Principal stresses");
       output.units              = read_units(values);
-      output.forces       = values.flag("Output/Forces");
+      output.forces             = values.flag("Output/Forces");
       output.checkpoint   = values.flag("Output/Checkpoint");
       output.verification = values.flag("Output/Verification");
       output.times        = values.flag("Output/Times");
@@ -1075,25 +1214,52 @@ namespace Friction
   std::string
   first_difference(const std::string &text, const std::string &other)
   {
+    // What one of the two does not mention has its default there.
     std::array<ParameterHandler, 2> handlers;
-    declare_parameters(handlers[0]);
-    declare_parameters(handlers[1]);
+    std::set<unsigned int>          further;
+    for (const std::string *const one : {&text, &other})
+      {
+        std::istringstream lines(*one);
+        for (std::string line; std::getline(lines, line);)
+          {
+            line = Utilities::trim(line);
+            if (line.compare(0, 11, "subsection ") == 0)
+              further.insert(
+                numbered_section(Utilities::trim(line.substr(11))).number);
+          }
+      }
+    further.erase(1);
+    for (ParameterHandler &handler : handlers)
+      {
+        declare_parameters(handler);
+        for (const unsigned int number : further)
+          declare_further_contact(handler, number);
+      }
     handlers[0].parse_input_from_string(text);
     handlers[1].parse_input_from_string(other);
-    const auto value = [&](const unsigned int i, const ParameterEntry &entry) {
-      handlers[i].enter_subsection(entry.section);
-      const std::string value = handlers[i].get(entry.name);
+    const auto value = [&](const unsigned int i,
+                           const std::string &section,
+                           const std::string &name) {
+      handlers[i].enter_subsection(section);
+      const std::string value = handlers[i].get(name);
       handlers[i].leave_subsection();
       return value;
     };
 
     for (const ParameterEntry &entry : parameter_entries())
-      if (entry.section != "Solver" && entry.section != "Output" &&
-          entry.path() != "Refinement/Levels" &&
-          entry.path() != "Refinement/Maximum dofs" &&
-          entry.path() != "Refinement/Estimate error" &&
-          value(0, entry) != value(1, entry))
-        return entry.path();
+      {
+        std::vector<std::string> sections = {entry.section};
+        if (entry.section == "Contact" || entry.section == "Obstacle")
+          for (const unsigned int number : further)
+            sections.push_back(section_name(entry.section, number));
+        for (const std::string &section : sections)
+          if (section != "Solver" && section != "Output" &&
+              entry.path() != "Refinement/Levels" &&
+              entry.path() != "Refinement/Maximum dofs" &&
+              entry.path() != "Refinement/Estimate error" &&
+              value(0, section, entry.name) != value(1, section, entry.name))
+            return section + '/' + entry.name;
+      }
     return "";
   }
 

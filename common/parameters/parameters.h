@@ -226,6 +226,15 @@ namespace Friction
       Material    material;
     };
 
+    /// One more part of the boundary that may touch something: sections
+    /// 'Contact 2' and 'Obstacle 2', and so on.
+    struct FurtherContact
+    {
+      unsigned int number = 2;
+      Obstacle     obstacle;
+      Contact      contact;
+    };
+
     /// What is strange about the scene but no error: entries that it does not
     /// use. Each a sentence.
     std::vector<std::string> warnings;
@@ -243,6 +252,10 @@ namespace Friction
     Obstacle           obstacle;
     BoundaryConditions boundary_conditions;
     Contact            contact;
+
+    /// Sorted by number; none in most scenes.
+    std::vector<FurtherContact> further_contacts;
+
     Refinement         refinement;
     SolverSettings     solver;
     Output             output;

@@ -11,7 +11,7 @@ import body
 import boundary
 from drawing import (BLUE, GREEN, GREY, PHASE_NAMES, PHASES, RED, STRESS, plt)
 from failure import Failure
-from fields import read_fields, select_field
+from fields import Mesh, read_fields, select_field
 
 
 def draw_run(run, choice):
@@ -344,8 +344,39 @@ def strip(axes, place, nodes):
 
 # The contact boundary in space.
 
+def of_one_section(nodes, faces):
+    """Of several contact boundaries the one with the most nodes in contact: its nodes,
+    its faces, and its section. A map shows one surface; if there is but one, there is
+    nothing to choose."""
+    if "section" not in nodes:
+        return nodes, faces, None
+    sections, counts = np.unique(
+        np.concatenate([nodes["section"], nodes["section"][nodes["state"] > 0]]),
+        return_counts=True)
+    section = int(sections[np.argmax(counts)])
+    unit = 1e-9 * max(np.ptp(faces.points), 1e-300)
+
+    def keys(points):
+        return [tuple(key) for key in np.round(points / unit).astype(np.int64)]
+
+    of_place = dict(zip(keys(nodes["point"]), nodes["section"]))
+    # Hanging nodes are no contact nodes, but not all corners of a face hang.
+    at = np.array([of_place.get(key, 0) for key in keys(faces.points)])
+    own = (at[faces.cells] == section).any(axis=1)
+    kept, cells = np.unique(faces.cells[own], return_inverse=True)
+    faces = Mesh(faces.points[kept], cells.reshape(-1, faces.cells.shape[1]),
+                 {name: values[kept] for name, values in faces.of_points.items()},
+                 {name: values[own] for name, values in faces.of_cells.items()})
+    inside = nodes["section"] == section
+    return {name: values[inside] for name, values in nodes.items()}, faces, section
+
+
 def draw_maps(part, run, nodes, faces):
     """Unrolled: pressure, tangential stress, states."""
+    nodes, faces, section = of_one_section(nodes, faces)
+    if section is not None:
+        name = "Contact" if section == 1 else f"Contact {section}"
+        part.suptitle(f"'{name}', one of several contact boundaries", fontsize=9)
     chart = boundary.Chart(nodes["point"], nodes["normal"], up=np.array([0., 1., 0.]))
     place = chart.place(nodes["point"])
     window = boundary.zone(place, nodes["state"], 0.12)

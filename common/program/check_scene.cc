@@ -28,12 +28,21 @@ namespace Friction
     const std::vector<std::string> warnings =
       warnings_at_start(discretization, parameters);
 
-    double smallest_gap = std::numeric_limits<double>::max();
+    const auto               &conditions = nest.scene().contact_conditions();
+    std::vector<double>       smallest_gaps(conditions.size(),
+                                      std::numeric_limits<double>::max());
+    std::vector<unsigned int> n_nodes(conditions.size(), 0);
     for (const ContactNode<dim> &p : discretization.contact())
-      smallest_gap = std::min(smallest_gap, p.gap);
-    smallest_gap = Utilities::MPI::min(smallest_gap, communicator);
-    const unsigned int n_nodes =
-      Utilities::MPI::sum(discretization.contact().size(), communicator);
+      {
+        smallest_gaps[p.condition] =
+          std::min(smallest_gaps[p.condition], p.gap);
+        ++n_nodes[p.condition];
+      }
+    for (unsigned int i = 0; i < conditions.size(); ++i)
+      {
+        smallest_gaps[i] = Utilities::MPI::min(smallest_gaps[i], communicator);
+        n_nodes[i]       = Utilities::MPI::sum(n_nodes[i], communicator);
+      }
     const auto n_cells = nest.mesh().n_global_active_cells();
     if (Utilities::MPI::this_mpi_process(communicator) != 0)
       return;
@@ -48,9 +57,14 @@ namespace Friction
         << " with boundary ids " << ids << "; the first mesh has "
         << counted(n_cells, "cell", "cells") << " and "
         << discretization.dof_handler().n_dofs() << " degrees of freedom.\n";
-    if (n_nodes > 0)
-      out << n_nodes << " of its nodes may touch the obstacle; the nearest is "
-          << smallest_gap + 0. << " away from it.\n";
+    for (unsigned int i = 0; i < conditions.size(); ++i)
+      if (n_nodes[i] > 0)
+        out << n_nodes[i] << " of its nodes may touch "
+            << (conditions.size() == 1
+                  ? "the obstacle"
+                  : "'" + conditions[i].obstacle_section() + "'")
+            << "; the nearest is " << smallest_gaps[i] + 0.
+            << " away from it.\n";
     out << "Nothing has been solved or written; without --check the scene "
         << (warnings.empty() ? "runs as it is."
                              : "would run in spite of the warnings above.")

@@ -493,8 +493,12 @@ namespace Friction
     bool
     has_contact(const Scene<dim> &scene, const FreePart<dim> &part)
     {
-      return part.boundary_ids.count(scene.contact_boundary_id()) > 0 &&
-        !scene.obstacle().empty();
+      const auto &conditions = scene.contact_conditions();
+      return std::any_of(
+        conditions.begin(), conditions.end(), [&](const auto &condition) {
+          return part.boundary_ids.count(condition.boundary_id) > 0 &&
+            !condition.obstacle.empty();
+        });
     }
   } // namespace
 

@@ -147,58 +147,29 @@ namespace Friction
     rotation[1][0]                  = s;
 
     mesh_file = read_mesh_file();
-    {
-      const auto &text = parameters.obstacle;
-      if (text.kind == ObstacleKind::plane)
-        {
-          Point<dim>     point;
-          Tensor<1, dim> normal;
-          normal[dim - 1] = -1.;
-          if (!text.point.empty())
-            point = make_point<dim>(text.point, here + "'Obstacle/Point'");
-          if (!text.normal.empty())
-            normal = make_point<dim>(text.normal, here + "'Obstacle/Normal'");
-          the_obstacle = Obstacle<dim>::half_space(Point<dim>(rotation * point),
-                                                   rotation * normal);
-        }
-      else if (text.kind == ObstacleKind::surface)
-        the_obstacle.add(std::make_shared<const LevelSurface<dim>>(
-          make_function({text.function}, here + "'Obstacle/Function'"),
-          body_size()));
-      else if (text.kind != ObstacleKind::none)
-        {
-          const bool are_balls = text.kind == ObstacleKind::balls;
-          if (dim == 2 && are_balls)
-            throw InputError(here +
-                             "'Obstacle/Kind' is 'balls', which there are in "
-                             "three dimensions only; take 'rods'.");
-          const bool have_axes = dim == 3 && !are_balls;
-          if (have_axes && text.axes.size() != text.centers.size())
-            throw InputError(here +
-                             "'Obstacle/Axes' needs one direction per "
-                             "point in 'Obstacle/Centers'; correct it.");
-          for (unsigned int i = 0; i < text.centers.size(); ++i)
-            {
-              typename Obstacle<dim>::Rod rod;
-              rod.center = Point<dim>(
-                rotation *
-                make_point<dim>(text.centers[i], here + "'Obstacle/Centers'"));
-              if (have_axes)
-                rod.axis =
-                  rotation *
-                  make_point<dim>(text.axes[i], here + "'Obstacle/Axes'");
-              rod.radius  = text.radii[text.radii.size() > 1 ? i : 0];
-              rod.length  = text.length;
-              rod.is_hole = text.is_hole;
-              the_obstacle.add(rod);
-            }
-        }
-    }
-
+    contacts.push_back(
+      read_contact(1, parameters.contact, parameters.obstacle));
+    for (const auto &further : parameters.further_contacts)
+      contacts.push_back(
+        read_contact(further.number, further.contact, further.obstacle));
     read_regions();
-    if (!parameters.contact.boundary.empty())
-      contact_id = read_boundary_id(parameters.contact.boundary,
-                                    here + "'Contact/Boundary id'");
+    for (unsigned int i = 0; i < contacts.size(); ++i)
+      {
+        const std::string &boundary = i == 0
+          ? parameters.contact.boundary
+          : parameters.further_contacts[i - 1].contact.boundary;
+        const std::string  where =
+          here + '\'' + contacts[i].section() + "/Boundary id'";
+        if (!boundary.empty())
+          contacts[i].boundary_id = read_boundary_id(boundary, where);
+        for (unsigned int j = 0; j < i; ++j)
+          if (contacts[i].has_boundary() &&
+              contacts[i].boundary_id == contacts[j].boundary_id)
+            throw InputError(where + " is " +
+                             std::to_string(contacts[i].boundary_id) +
+                             ", as is that of '" + contacts[j].section() +
+                             "'; a boundary can have one of them only.");
+      }
 
     // What is prescribed twice could be meant in two ways.
     const auto check_once = [](const auto        &conditions,
@@ -313,15 +284,109 @@ namespace Friction
         exact = make_function(components, where);
       }
 
-    if (parameters.contact.friction_law == FrictionLaw::coulomb &&
-        !parameters.contact.varying_coefficient.empty())
-      coefficient = make_function({parameters.contact.varying_coefficient},
-                                  here + "'Contact/Friction coefficient'",
-                                  0.);
-    if (parameters.contact.friction_law == FrictionLaw::tresca)
-      bound = make_function({parameters.contact.friction_bound},
-                            here + "'Contact/Friction bound'",
-                            0.);
+    read_friction(contacts[0], parameters.contact);
+    for (unsigned int i = 1; i < contacts.size(); ++i)
+      read_friction(contacts[i], parameters.further_contacts[i - 1].contact);
+  }
+
+
+
+  template <int dim>
+  Obstacle<dim>
+  Scene<dim>::make_obstacle(const Parameters::Obstacle &text,
+                            const std::string          &section) const
+  {
+    const auto where = [&](const std::string &entry) {
+      return subject() + '\'' + section + '/' + entry + '\'';
+    };
+    Obstacle<dim> obstacle;
+    if (text.kind == ObstacleKind::plane)
+      {
+        Point<dim>     point;
+        Tensor<1, dim> normal;
+        normal[dim - 1] = -1.;
+        if (!text.point.empty())
+          point = make_point<dim>(text.point, where("Point"));
+        if (!text.normal.empty())
+          normal = make_point<dim>(text.normal, where("Normal"));
+        obstacle = Obstacle<dim>::half_space(Point<dim>(rotation * point),
+                                             rotation * normal);
+      }
+    else if (text.kind == ObstacleKind::surface)
+      obstacle.add(std::make_shared<const LevelSurface<dim>>(
+        make_function({text.function}, where("Function")), body_size()));
+    else if (text.kind != ObstacleKind::none)
+      {
+        const bool are_balls = text.kind == ObstacleKind::balls;
+        if (dim == 2 && are_balls)
+          throw InputError(where("Kind") +
+                           " is 'balls', which there are in three dimensions "
+                           "only; take 'rods'.");
+        const bool have_axes = dim == 3 && !are_balls;
+        if (have_axes && text.axes.size() != text.centers.size())
+          throw InputError(where("Axes") +
+                           " needs one direction per point in '" + section +
+                           "/Centers'; correct it.");
+        for (unsigned int i = 0; i < text.centers.size(); ++i)
+          {
+            typename Obstacle<dim>::Rod rod;
+            rod.center = Point<dim>(
+              rotation * make_point<dim>(text.centers[i], where("Centers")));
+            if (have_axes)
+              rod.axis =
+                rotation * make_point<dim>(text.axes[i], where("Axes"));
+            rod.radius  = text.radii[text.radii.size() > 1 ? i : 0];
+            rod.length  = text.length;
+            rod.is_hole = text.is_hole;
+            obstacle.add(rod);
+          }
+      }
+    return obstacle;
+  }
+
+
+
+  template <int dim>
+  ContactCondition<dim>
+  Scene<dim>::read_contact(const unsigned int          number,
+                           const Parameters::Contact  &contact,
+                           const Parameters::Obstacle &obstacle) const
+  {
+    ContactCondition<dim> result;
+    result.number   = number;
+    result.obstacle = make_obstacle(obstacle, result.obstacle_section());
+    if (!result.obstacle.empty())
+      result.normal = contact.normal;
+    result.ignores_prescribed_penetration =
+      contact.ignore_prescribed_penetration;
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::read_friction(ContactCondition<dim>     &condition,
+                            const Parameters::Contact &text) const
+  {
+    const auto where = [&](const std::string &entry) {
+      return subject() + '\'' + condition.section() + '/' + entry + '\'';
+    };
+    condition.friction_law = text.friction_law;
+    if (text.friction_law == FrictionLaw::tresca)
+      condition.friction_bound =
+        make_function({text.friction_bound}, where("Friction bound"), 0.);
+    if (text.friction_law != FrictionLaw::coulomb)
+      return;
+    if (!text.varying_coefficient.empty())
+      condition.varying_coefficient = make_function(
+        {text.varying_coefficient}, where("Friction coefficient"), 0.);
+    else
+      {
+        condition.friction_coefficient = text.friction_coefficient;
+        if (text.friction_coefficient == 0.)
+          condition.friction_law = FrictionLaw::none;
+      }
   }
 
 
@@ -427,7 +492,9 @@ namespace Friction
       mesh_file = read_mesh_file();
     if (mesh_file != nullptr)
       {
-        std::set<types::boundary_id> used = {contact_boundary_id()};
+        std::set<types::boundary_id> used;
+        for (const auto &condition : contacts)
+          used.insert(condition.boundary_id);
         for (const auto &condition : dirichlet)
           used.insert(condition.boundary_id);
         for (const auto &condition : tractions)
@@ -465,8 +532,9 @@ namespace Friction
       check_id(condition.boundary_id, "Boundary conditions/Displacement");
     for (const auto &condition : tractions)
       check_id(condition.boundary_id, "Boundary conditions/Traction");
-    if (contact_boundary_id() != numbers::invalid_boundary_id)
-      check_id(contact_boundary_id(), "Contact/Boundary id");
+    for (const auto &condition : contacts)
+      if (condition.has_boundary())
+        check_id(condition.boundary_id, condition.section() + "/Boundary id");
     check_pinned_points(mesh, here);
     check_that_body_can_be_held(*this, mesh, here);
     mesh_file.reset();
@@ -545,35 +613,25 @@ namespace Friction
 
 
   template <int dim>
-  types::boundary_id
-  Scene<dim>::contact_boundary_id() const
+  unsigned int
+  Scene<dim>::n_contact_boundaries() const
   {
-    return contact_id;
+    return std::count_if(
+      contacts.begin(), contacts.end(), [](const auto &condition) {
+        return condition.has_boundary();
+      });
   }
 
 
 
   template <int dim>
-  FrictionLaw
-  Scene<dim>::friction_law() const
+  const ContactCondition<dim> *
+  Scene<dim>::contact_on(const types::boundary_id id) const
   {
-    const auto &contact = parameters.contact;
-    return (contact.friction_law == FrictionLaw::coulomb &&
-            contact.varying_coefficient.empty() &&
-            contact.friction_coefficient == 0.)
-      ? FrictionLaw::none
-      : contact.friction_law;
-  }
-
-
-
-  template <int dim>
-  double
-  Scene<dim>::friction_coefficient() const
-  {
-    return friction_law() == FrictionLaw::coulomb
-      ? parameters.contact.friction_coefficient
-      : 0.;
+    for (const auto &condition : contacts)
+      if (condition.has_boundary() && condition.boundary_id == id)
+        return &condition;
+    return nullptr;
   }
 
 
@@ -583,17 +641,31 @@ namespace Friction
   Scene<dim>::warning(const double largest_coefficient) const
   {
     // One without the other is most likely forgotten. Given friction needs no
-    // obstacle.
-    const bool has_obstacle = parameters.obstacle.kind != ObstacleKind::none;
-    const bool has_boundary = contact_id != numbers::invalid_boundary_id;
-    if (has_obstacle && !has_boundary)
-      return "Warning: no part of the boundary may touch the obstacle, so "
-             "there "
-             "will be no contact; if there should be, set 'Contact/Boundary "
-             "id'.";
-    if (has_boundary && !has_obstacle && friction_law() != FrictionLaw::tresca)
-      return "Warning: there is no obstacle, so there will be no contact; if "
-             "there should be, set 'Obstacle/Kind'.";
+    // obstacle. What the first section does not have others may.
+    for (const auto &condition : contacts)
+      {
+        const bool is_mentioned =
+          condition.has_boundary() || !condition.obstacle.empty();
+        if (condition.number > 1 && !condition.has_boundary())
+          return "Warning: the sections '" + condition.section() + "' and '" +
+            condition.obstacle_section() + "' are of no effect, since '" +
+            condition.section() + "/Boundary id' names no boundary; set it.";
+        if (!condition.obstacle.empty() && !condition.has_boundary())
+          return "Warning: no part of the boundary may touch the obstacle, so "
+                 "there "
+                 "will be no contact; if there should be, set "
+                 "'Contact/Boundary "
+                 "id'.";
+        if (is_mentioned && condition.obstacle.empty() &&
+            condition.friction_law != FrictionLaw::tresca)
+          return "Warning: there is no obstacle" +
+            (condition.number == 1 ? std::string()
+                                   : " for '" + condition.section() + "'") +
+            ", so there will be no contact" +
+            (contacts.size() == 1 ? "" : " there") +
+            "; if there should be, set '" + condition.obstacle_section() +
+            "/Kind'.";
+      }
 
     double bound = std::numeric_limits<double>::max();
     for (const Material &material : the_materials.of_regions())

@@ -52,6 +52,69 @@ namespace Friction
   };
 
   /**
+   * A part of the boundary that may touch an obstacle, and by which law.
+   */
+  template <int dim>
+  struct ContactCondition
+  {
+    /// 1 for the section 'Contact', 2 for 'Contact 2', ...
+    unsigned int number = 1;
+
+    /// Invalid if there is no such part of the boundary.
+    types::boundary_id boundary_id = numbers::invalid_boundary_id;
+
+    Obstacle<dim> obstacle;
+
+    /// Without an obstacle that of the body.
+    ContactNormal normal = ContactNormal::body;
+
+    /// Whether nodes may be prescribed to lie inside the obstacle.
+    bool ignores_prescribed_penetration = false;
+
+    /// Coulomb's law with a coefficient of zero is no friction, so that nothing
+    /// is computed for it.
+    FrictionLaw friction_law = FrictionLaw::none;
+
+    /// Coulomb's law: the coefficient, if it is the same everywhere; zero if
+    /// not, and with the other laws.
+    double friction_coefficient = 0.;
+
+    /// Coulomb's law, where it is not the same everywhere: a function of one
+    /// component on the body as it is before it is deformed; null if it is.
+    std::shared_ptr<const Function<dim>> varying_coefficient;
+
+    /// Tresca's law: the largest tangential stress, one component; null for the
+    /// other laws.
+    std::shared_ptr<const Function<dim>> friction_bound;
+
+    bool
+    has_boundary() const
+    {
+      return boundary_id != numbers::invalid_boundary_id;
+    }
+
+    /// The names of its sections.
+    std::string
+    section() const
+    {
+      return section_of("Contact");
+    }
+
+    std::string
+    obstacle_section() const
+    {
+      return section_of("Obstacle");
+    }
+
+  private:
+    std::string
+    section_of(const std::string &base) const
+    {
+      return number == 1 ? base : base + ' ' + std::to_string(number);
+    }
+  };
+
+  /**
    * One component of the displacement prescribed in one vertex of the mesh,
    * to rule out a rigid-body motion.
    */
@@ -156,68 +219,29 @@ namespace Friction
       return exact;
     }
 
-    /// numbers::invalid_boundary_id if the scene has no contact boundary.
-    types::boundary_id contact_boundary_id() const;
-
-    const Obstacle<dim> &
-    obstacle() const
-    {
-      return the_obstacle;
-    }
-
-    /// Without an obstacle that of the body.
-    ContactNormal
-    contact_normal() const
-    {
-      return the_obstacle.empty() ? ContactNormal::body
-                                  : parameters.contact.normal;
-    }
-
-    /// Whether nodes of the contact boundary may be prescribed to lie inside
-    /// the obstacle.
-    bool
-    ignores_prescribed_penetration() const
-    {
-      return parameters.contact.ignore_prescribed_penetration;
-    }
-
     /**
-     * The law of friction. Coulomb's law with a coefficient of zero is
-     * reported as no friction, so that nothing is computed for it.
+     * What the body may touch, and where: sections 'Contact' and 'Obstacle',
+     * then 'Contact 2' and 'Obstacle 2', and so on. The first is always there;
+     * one that has no boundary is of no effect.
      */
-    FrictionLaw friction_law() const;
-
-    /// Coefficient of friction if it is the same everywhere; zero if not, or
-    /// without friction.
-    double friction_coefficient() const;
-
-    /**
-     * Coulomb's law: the coefficient of friction where it is not the same
-     * everywhere, a function of one component on the body as it is before it is
-     * deformed; null if it is.
-     */
-    std::shared_ptr<const Function<dim>>
-    varying_coefficient() const
+    const std::vector<ContactCondition<dim>> &
+    contact_conditions() const
     {
-      return coefficient;
+      return contacts;
     }
 
-    /**
-     * Tresca's law: the largest tangential stress, one component; null for the
-     * other laws.
-     */
-    std::shared_ptr<const Function<dim>>
-    friction_bound() const
-    {
-      return bound;
-    }
+    /// The number of conditions that have a boundary.
+    unsigned int n_contact_boundaries() const;
+
+    /// The condition of a part of the boundary; null if it may touch nothing.
+    const ContactCondition<dim> *contact_on(const types::boundary_id id) const;
 
     /**
      * What should be said before anybody believes a solution, or nothing: that
      * there is an obstacle but no boundary that may touch it, or the other way
      * round, or that the coefficient of friction is above Eck's bound.
      *
-     * @param largest_coefficient  of friction, on the contact boundary.
+     * @param largest_coefficient  of friction, on all contact boundaries.
      */
     std::string warning(const double largest_coefficient) const;
 
@@ -226,6 +250,19 @@ namespace Friction
     double body_size() const;
 
     void read_regions();
+
+    /// Both, of a section that has this number.
+    Obstacle<dim> make_obstacle(const Parameters::Obstacle &text,
+                                const std::string          &section) const;
+
+    ContactCondition<dim>
+    read_contact(const unsigned int          number,
+                 const Parameters::Contact  &contact,
+                 const Parameters::Obstacle &obstacle) const;
+
+    /// What is asked for along the boundary, once names can be understood.
+    void read_friction(ContactCondition<dim>     &condition,
+                       const Parameters::Contact &text) const;
 
     /// The coarse mesh on one process, checked.
     void make_serial_mesh(Triangulation<dim> &mesh) const;
@@ -250,17 +287,15 @@ namespace Friction
     /// What read_mesh_file() gave us, until there is a mesh.
     mutable std::shared_ptr<const MeshFile<dim>> mesh_file;
 
-    types::boundary_id contact_id = numbers::invalid_boundary_id;
-    Materials<dim>     the_materials;
-    Tensor<2, dim>     rotation;
-    Obstacle<dim>      the_obstacle;
+    Materials<dim> the_materials;
+    Tensor<2, dim> rotation;
+
+    std::vector<ContactCondition<dim>>   contacts;
     std::vector<DirichletCondition<dim>> dirichlet;
     std::vector<TractionCondition<dim>>  tractions;
     std::vector<PinnedPoint<dim>>        pinned;
     std::shared_ptr<const Function<dim>> force;
     std::shared_ptr<const Function<dim>> exact;
-    std::shared_ptr<const Function<dim>> coefficient;
-    std::shared_ptr<const Function<dim>> bound;
 
     std::shared_ptr<const Function<dim>>
     make_function(const std::vector<std::string> &components,

@@ -60,7 +60,7 @@ namespace
               for (const unsigned int f : cell->face_indices())
                 if (cell->at_boundary(f) &&
                     cell->face(f)->boundary_id() ==
-                      scene.contact_boundary_id() &&
+                      scene.contact_conditions()[0].boundary_id &&
                     std::abs(
                       cell->face(f)->center()[0] -
                       (parameters.scene.geometry == GeometryKind::rectangle
@@ -142,7 +142,9 @@ namespace
     n_hanging_at_contact(const ContactState &state, const bool sticks) const
     {
       return Tests::n_hanging_at_contact<dim>(
-        discretization, scene.contact_boundary_id(), [&](const unsigned int p) {
+        discretization,
+        scene.contact_conditions()[0].boundary_id,
+        [&](const unsigned int p) {
           return state.in_contact(p) && state.sticks(p) == sticks;
         });
     }

@@ -112,7 +112,8 @@ main(int argc, char *argv[])
 
   const Parameters p = parameters();
   const Scene<2>   scene(p);
-  std::cout << scene.warning(scene.friction_coefficient()) << std::endl;
+  std::cout << scene.warning(scene.contact_conditions()[0].friction_coefficient)
+            << std::endl;
   const auto mesh = make_triangulation<2>();
   scene.make_coarse_mesh(*mesh);
   const Discretized<2> d(scene, *mesh);

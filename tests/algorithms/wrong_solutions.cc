@@ -163,11 +163,12 @@ namespace
       n_hanging += nest.discretization().constraints().is_hanging(i);
     check(n_hanging > 0 &&
             (dim == 2 ||
-             n_hanging_at_contact<dim>(nest.discretization(),
-                                       nest.scene().contact_boundary_id(),
-                                       [&](const unsigned int p) {
-                                         return nest.state().in_contact(p);
-                                       }) > 0),
+             n_hanging_at_contact<dim>(
+               nest.discretization(),
+               nest.scene().contact_conditions()[0].boundary_id,
+               [&](const unsigned int p) {
+                 return nest.state().in_contact(p);
+               }) > 0),
           "there are hanging nodes where it matters");
     test_values(nest, tolerance);
     test_flags(nest, tolerance);

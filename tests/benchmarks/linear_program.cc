@@ -91,11 +91,12 @@ namespace Benchmark
                                                *condition.displacement,
                                                constraints,
                                                condition.components);
-    VectorTools::interpolate_boundary_values(mapping,
-                                             dofs,
-                                             scene.contact_boundary_id(),
-                                             Functions::ZeroFunction<dim>(dim),
-                                             constraints);
+    VectorTools::interpolate_boundary_values(
+      mapping,
+      dofs,
+      scene.contact_conditions()[0].boundary_id,
+      Functions::ZeroFunction<dim>(dim),
+      constraints);
     constraints.close();
     const double mesh_seconds = lap();
 

@@ -286,10 +286,11 @@ namespace Benchmark
           if (exact)
             compare_with_exact(nest);
           else
-            functions.emplace_back(nest.discretization().dof_handler(),
-                                   nest.scene().contact_boundary_id(),
-                                   nest.displacement(),
-                                   nest.tractions());
+            functions.emplace_back(
+              nest.discretization().dof_handler(),
+              nest.scene().contact_conditions()[0].boundary_id,
+              nest.displacement(),
+              nest.tractions());
           clock.start();
           another = nest.advance();
         }
@@ -409,7 +410,7 @@ namespace Benchmark
 
       const auto sizes =
         CoarseFunctions<dim>(d.dof_handler(),
-                             nest.scene().contact_boundary_id(),
+                             nest.scene().contact_conditions()[0].boundary_id,
                              nest.displacement(),
                              nest.tractions())
           .on(d)

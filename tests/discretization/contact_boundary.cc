@@ -182,7 +182,8 @@ namespace
     for (const auto &cell : disc.dof_handler().active_cell_iterators())
       for (const unsigned int f : cell->face_indices())
         if (cell->face(f)->at_boundary() &&
-            cell->face(f)->boundary_id() == problem.scene.contact_boundary_id())
+            cell->face(f)->boundary_id() ==
+              problem.scene.contact_conditions()[0].boundary_id)
           {
             face_values.reinit(cell, f);
             local = 0.;

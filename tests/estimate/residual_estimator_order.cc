@@ -160,9 +160,9 @@ namespace
     constraints.distribute(t);
 
     EstimatorProblem<dim> problem(material_of(lambda, mu));
-    problem.body_force       = &body_force;
-    problem.tractions[1]     = &side;
-    problem.contact_boundary = 2;
+    problem.body_force   = &body_force;
+    problem.tractions[1] = &side;
+    problem.contact[2]   = {};
     for (const unsigned int id : {0, 3, 4, 5})
       problem.dirichlet[id] = ComponentMask(dim, true);
     EstimatorContact contact;
@@ -300,8 +300,8 @@ namespace
     constraints.distribute(u);
 
     EstimatorProblem<dim> problem(material_of(1., 1.));
-    problem.contact_boundary = 2;
-    problem.dirichlet[3]     = ComponentMask(dim, true);
+    problem.contact[2]   = {};
+    problem.dirichlet[3] = ComponentMask(dim, true);
     EstimatorContact contact;
     contact.traction = &t;
     const ErrorEstimate e =

@@ -125,9 +125,9 @@ namespace
     VectorTools::interpolate(mapping, dof_handler, base_normal, n);
 
     EstimatorProblem<dim> problem(material_of(lambda, mu));
-    problem.contact_boundary     = 2;
-    problem.friction_coefficient = friction;
-    problem.dirichlet[3]         = ComponentMask(dim, true);
+    problem.contact[2]             = {};
+    problem.contact[2].coefficient = friction;
+    problem.dirichlet[3]           = ComponentMask(dim, true);
 
     std::vector<Functions::ConstantFunction<dim>> sides;
     sides.reserve(2 * dim);
@@ -188,10 +188,10 @@ namespace
     problem.dirichlet[0] = ComponentMask(dim, true);
     print("its displacement given");
 
-    problem.friction_coefficient = 2 * friction;
+    problem.contact[2].coefficient = 2 * friction;
     print("twice the friction");
     std::cout << "  expected complementarity " << shear * 0.3 << std::endl;
-    problem.friction_coefficient = friction;
+    problem.contact[2].coefficient = friction;
 
     g = n;
     print("a gap of one");

@@ -434,7 +434,8 @@ namespace
   {
     Random                   random(1);
     const RandomProblem<dim> problem(parameters, 2, .5, random);
-    const double             friction = problem.scene.friction_coefficient();
+    const double             friction =
+      problem.scene.contact_conditions()[0].friction_coefficient;
     std::cout << dim << "D, " << what << ", " << problem.contact().size()
               << " contact nodes, " << problem.n_hanging() << " nodes hang"
               << std::endl;

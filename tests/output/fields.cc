@@ -67,7 +67,7 @@ namespace
     on_first_process(MPI_COMM_WORLD,
                      [&]() { std::filesystem::remove_all(name); });
     const RunDirectory directory(name, MPI_COMM_WORLD);
-    FieldWriter<dim>   writer(directory, Material(2.5, .25), 2, format);
+    FieldWriter<dim>   writer(directory, Material(2.5, .25), {2}, format);
 
     parallel::distributed::Triangulation<dim> triangulation(MPI_COMM_WORLD);
     GridGenerator::hyper_cube(triangulation, 0., 1., true);
@@ -198,7 +198,7 @@ namespace
     const RunDirectory directory(name, MPI_COMM_WORLD);
     const Material     material(2.5, .25, kind);
     FieldWriter<dim>   writer(
-      directory, material, 2, FieldFormat::vtu, /*principal_stresses=*/true);
+      directory, material, {2}, FieldFormat::vtu, /*principal_stresses=*/true);
 
     Triangulation<dim> coarse;
     GridGenerator::subdivided_hyper_cube(coarse, 2);
@@ -382,7 +382,7 @@ namespace
                      [&]() { std::filesystem::remove_all(name); });
     const RunDirectory directory(name, MPI_COMM_WORLD);
     FieldWriter<2>     writer(
-      directory, Material(2.5, .25, kind), 2, FieldFormat::hdf5);
+      directory, Material(2.5, .25, kind), {2}, FieldFormat::hdf5);
 
     parallel::distributed::Triangulation<2> triangulation(MPI_COMM_WORLD);
     GridGenerator::hyper_cube(triangulation);

@@ -127,6 +127,10 @@ class Entries:
         for section, names in self.sections.items():
             for name in names:
                 self.names.setdefault(name, []).append(section)
+        # Of these there may be several.
+        for section in ("Contact", "Obstacle"):
+            for number in range(2, 100):
+                self.sections[f"{section} {number}"] = self.sections[section]
         self._answers, self.is_rehearsal = {}, True
         self._scene = tempfile.NamedTemporaryFile("w", suffix=".prm")
         self._scene.write("# Nothing: entries are on the command line.\n")

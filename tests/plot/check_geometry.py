@@ -9,6 +9,7 @@ import numpy as np
 
 import body
 import boundary
+import draw_run
 import fields
 
 failures = 0
@@ -175,8 +176,41 @@ def test_chart():
     check(chart.circle is None, "a ball is seen along its normal")
 
 
+def test_sections():
+    """Bottom and top of a cube are two contact boundaries, with hanging nodes; on the
+    top more nodes touch."""
+    points, cells = cube([(0, 0, 1), (1, 0, 0)])
+    quadrilaterals, _ = body.surface(cells)
+    level = points[quadrilaterals][:, :, 2]
+    quadrilaterals = quadrilaterals[(level == 0).all(axis=1) | (level == 1).all(axis=1)]
+    faces = fields.Mesh(points, quadrilaterals, {"pressure": points[:, 2]},
+                        {"place": points[quadrilaterals].mean(axis=1)})
+    # Those between coarse and fine cells hang.
+    free = np.array([i for i in np.unique(quadrilaterals) if not (
+        (points[i] * 4 % 2).any() and (points[i, :2] == 0.5).any())])
+    at_top = points[free, 2] == 1
+    nodes = {"point": points[free], "section": np.where(at_top, 2, 1),
+             "state": np.where(at_top | (points[free, 0] == 0), 1, 0)}
+    own, top, section = draw_run.of_one_section(nodes, faces)
+    corners = top.points[top.cells]
+    areas = np.linalg.norm(np.cross(corners[:, 2] - corners[:, 0],
+                                    corners[:, 3] - corners[:, 1]), axis=1) / 2
+    check(section == 2 and (own["point"][:, 2] == 1).all()
+          and len(own["point"]) == at_top.sum() < (points[:, 2] == 1).sum(),
+          "of several contact boundaries one is drawn")
+    check((top.points[:, 2] == 1).all() and abs(areas.sum() - 1) < 1e-12
+          and (top.of_points["pressure"] == 1).all()
+          and np.allclose(top.of_cells["place"], corners.mean(axis=1)),
+          "all faces of it, and no others", f"{areas.sum()}")
+    del nodes["section"]
+    same = draw_run.of_one_section(nodes, faces)
+    check(same[0] is nodes and same[1] is faces and same[2] is None,
+          "where there is one, nothing is chosen")
+
+
 test_surface()
 test_merged()
+test_sections()
 test_line()
 test_chart()
 sys.exit(failures > 0)

@@ -272,6 +272,12 @@ def mesh(name, **overrides):
     return dict({'Scene/Mesh file': name + '.msh'}, **overrides)
 
 
+def ceiling(**overrides):
+    """Something above the block of two cells, one away from it."""
+    return dict({'Obstacle 2/Kind': 'plane', 'Obstacle 2/Point': '0, 2',
+                 'Obstacle 2/Normal': '0, 1', 'Contact 2/Boundary id': '3'}, **overrides)
+
+
 D, T, P, N = ('Boundary conditions/Displacement', 'Boundary conditions/Traction',
               'Boundary conditions/Pinned points', 'Contact/Contact normal')
 B = 'Boundary conditions/Body force'
@@ -567,6 +573,45 @@ CASES = [
      'good', []),
     (11, 'negative id', 'moved', {'Contact/Boundary id': '-7'}, 'error',
      ['no boundary id']),
+    # 12. Several contact boundaries.
+    (12, 'a second one', 'pressed', ceiling(), 'good', []),
+    (12, 'a corner', 'moved', {
+        D: '3: 0, -0.01', 'Contact 2/Boundary id': '1', 'Obstacle 2/Kind': 'plane',
+        'Obstacle 2/Point': '2, 0', 'Obstacle 2/Normal': '1, 0'}, 'error',
+     [r'node at \(2 0\) lies on two', "'Contact' and 'Contact 2'"]),
+    (12, 'a corner that is held', 'moved', {
+        'Scene/Size': '2, 1', D: '3: 0, -0.01; 0: 0, 0', 'Contact 2/Boundary id': '0',
+        'Obstacle 2/Kind': 'plane', 'Obstacle 2/Point': '-1, 0',
+        'Obstacle 2/Normal': '-1, 0'}, 'warning', ["of 'Contact 2' faces the obstacle"]),
+    (12, 'the same boundary', 'pressed', ceiling(**{'Contact 2/Boundary id': '2'}),
+     'error', ["'Contact 2/Boundary id' is 2, as is that of 'Contact'"]),
+    (12, 'a boundary that is not there', 'pressed',
+     ceiling(**{'Contact 2/Boundary id': '9'}), 'error',
+     ["'Contact 2/Boundary id' names boundary id 9"]),
+    (12, 'no boundary', 'pressed', ceiling(**{'Contact 2/Boundary id': '-1'}), 'warning',
+     ["'Contact 2' and 'Obstacle 2' are of no effect"]),
+    (12, 'no obstacle', 'pressed', ceiling(**{
+        'Obstacle 2/Kind': 'none', 'Obstacle 2/Point': '', 'Obstacle 2/Normal': ''}),
+     'warning', ["there is no obstacle for 'Contact 2'"]),
+    (12, 'an obstacle on the wrong side', 'pressed',
+     ceiling(**{'Obstacle 2/Normal': '0, -1'}), 'warning',
+     ["of 'Contact 2' faces the obstacle"]),
+    (12, 'number one', 'pressed', {'Contact 1/Boundary id': '3'}, 'error',
+     ["there is no section 'Contact 1'; did you mean 'Contact'"]),
+    (12, 'an entry that is not there', 'pressed', {'Contact 2/Friction': '3'}, 'error',
+     ["there is no entry 'Contact 2/Friction'"]),
+    (12, 'negative coefficient', 'pressed',
+     ceiling(**{'Contact 2/Friction coefficient': '-0.1'}), 'error',
+     ["'Contact 2/Friction coefficient' is -0.1, but it must not be negative"]),
+    (12, 'coefficient with an unknown name', 'pressed',
+     ceiling(**{'Contact 2/Friction coefficient': '2*f'}), 'error',
+     ["'Contact 2/Friction coefficient': '2.f' cannot be understood"]),
+    (12, 'coefficient above the bound', 'pressed',
+     ceiling(**{'Contact 2/Friction coefficient': '7*F'}), 'warning',
+     ['friction 2.1 is above']),
+    (12, 'what nothing uses', 'pressed', ceiling(**{
+        'Obstacle 2/Radius': '3', 'Contact 2/Friction bound': '1'}), 'warning',
+     ["'Obstacle 2/Radius' is not used", "'Contact 2/Friction bound' is not used"]),
 ]
 
 

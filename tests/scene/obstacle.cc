@@ -201,11 +201,12 @@ main()
     // (1, 2) of the scene as written is (-2, 1) after a quarter turn.
     const Point<2> p(-2, 1);
     const auto    &u = *scene.dirichlet_conditions()[0].displacement;
-    std::cout << scene.obstacle().gap(Point<2>(), right) << "; "
-              << scene.obstacle().normal(Point<2>()) << "; " << u.value(p, 0)
-              << ' ' << u.value(p, 1) << "; "
-              << scene.friction_bound()->value(p) << "; " << u.gradient(p, 0)
-              << "; " << u.gradient(p, 1) << std::endl;
+    std::cout << scene.contact_conditions()[0].obstacle.gap(Point<2>(), right)
+              << "; "
+              << scene.contact_conditions()[0].obstacle.normal(Point<2>())
+              << "; " << u.value(p, 0) << ' ' << u.value(p, 1) << "; "
+              << scene.contact_conditions()[0].friction_bound->value(p) << "; "
+              << u.gradient(p, 0) << "; " << u.gradient(p, 1) << std::endl;
   }
   {
     // No friction is no friction, whatever it is called.
@@ -213,9 +214,12 @@ main()
                                   "  set Displacement = 3: 0, 0\n"
                                   "end\n";
     const Scene<2> scene(read_parameters("scene.prm"));
-    std::cout << (scene.friction_law() == FrictionLaw::none) << ' '
-              << (scene.contact_boundary_id() == numbers::invalid_boundary_id)
-              << ' ' << scene.obstacle().empty() << ' '
+    std::cout << (scene.contact_conditions()[0].friction_law ==
+                  FrictionLaw::none)
+              << ' '
+              << (scene.contact_conditions()[0].boundary_id ==
+                  numbers::invalid_boundary_id)
+              << ' ' << scene.contact_conditions()[0].obstacle.empty() << ' '
               << (scene.body_force() == nullptr) << std::endl;
   }
 }

@@ -147,18 +147,20 @@ namespace
           }
 
         // At the bottom.
-        const Tensor<1, dim> normal   = outward_normal(2 * dim - 2);
-        const Point<dim>     p        = on_side(2 * dim - 2);
-        const Tensor<1, dim> t        = stress(scene, p) * normal;
-        const double         gap      = scene.obstacle().gap(p, normal);
+        const Tensor<1, dim> normal = outward_normal(2 * dim - 2);
+        const Point<dim>     p      = on_side(2 * dim - 2);
+        const Tensor<1, dim> t      = stress(scene, p) * normal;
+        const double         gap =
+          scene.contact_conditions()[0].obstacle.gap(p, normal);
         const Tensor<1, dim> value    = displacement(p);
         const double         pressure = -(t * normal);
         const Tensor<1, dim> shear    = t - (t * normal) * normal;
         const Tensor<1, dim> slip     = value - (value * normal) * normal;
-        const double         bound    = scene.friction_coefficient() * pressure;
-        const double         distance = gap - value * normal;
-        const bool           open     = distance > 1e-9;
-        const bool           slipping = slip.norm() > 1e-9;
+        const double         bound =
+          scene.contact_conditions()[0].friction_coefficient * pressure;
+        const double distance = gap - value * normal;
+        const bool   open     = distance > 1e-9;
+        const bool   slipping = slip.norm() > 1e-9;
         ++(open ? n_open : slipping ? n_slip : n_stick);
         law = std::max(
           {law,
@@ -188,7 +190,8 @@ namespace
     const Scene<dim>   scene(read_parameters(scene_file<dim>(name)));
     Triangulation<dim> mesh;
     scene.make_coarse_mesh(mesh);
-    std::cout << name << ": F " << scene.friction_coefficient() << ", "
+    std::cout << name << ": F "
+              << scene.contact_conditions()[0].friction_coefficient << ", "
               << mesh.n_active_cells() << " cells, "
               << scene.dirichlet_conditions().size() << " Dirichlet, "
               << scene.traction_conditions().size() << " traction, "

@@ -243,7 +243,7 @@ namespace Tests
     n_hanging_at_contact(const Condition &holds) const
     {
       return Tests::n_hanging_at_contact<dim>(
-        discretization, scene.contact_boundary_id(), holds);
+        discretization, scene.contact_conditions()[0].boundary_id, holds);
     }
 
     /** The number of hanging nodes one of whose masters is truncated although

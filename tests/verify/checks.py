@@ -86,22 +86,29 @@ def check_normals(verdict, found, exact):
     verdict.demand(set(nodes) <= set(boundary.nodes) and len(set(nodes)) == len(nodes)
                    and not np.any(found.is_hanging[nodes]),
                    "a contact node is none of the contact boundary")
+    verdict.demand(np.array_equal(boundary.section[nodes], level.contact_sections),
+                   "a contact node is said to be on another boundary")
     verdict.demand(np.all(np.isfinite(found.gap)),
                    "a contact node cannot meet the obstacle")
     verdict.check("given", np.abs(np.linalg.norm(normals, axis=1) - 1), exact,
                   "a normal is no unit vector", found.x)
-    if level.contact_normal == "obstacle":
-        _, towards = level.obstacle.nearest(found.x, boundary.normal[nodes])
-        # Where a node is held in some directions, in those that are left.
-        towards = np.where(level.is_prescribed[nodes], 0, towards)
-        towards /= np.maximum(np.linalg.norm(towards, axis=1), 1e-300)[:, None]
-        verdict.check("given", np.abs(normals - towards).max(axis=1, initial=0), exact,
-                      "a normal does not point straight to the obstacle", found.x)
-    else:
-        cosines = np.clip(np.sum(normals * boundary.normal[nodes], axis=1), -1, 1)
-        turns = np.array([boundary.turn.get(node, 0) for node in nodes])
-        verdict.demand(np.all(np.degrees(np.arccos(cosines)) <= turns + 1),
-                       "a normal points away from those of the faces around its node")
+    for contact in level.contacts:
+        own = level.of_contact(contact)
+        if contact.contact_normal == "obstacle":
+            _, towards = contact.obstacle.nearest(found.x[own],
+                                                  boundary.normal[nodes[own]])
+            # Where a node is held in some directions, in those that are left.
+            towards = np.where(level.is_prescribed[nodes[own]], 0, towards)
+            towards /= np.maximum(np.linalg.norm(towards, axis=1), 1e-300)[:, None]
+            verdict.check("given", np.abs(normals[own] - towards).max(axis=1, initial=0),
+                          exact, "a normal does not point straight to the obstacle",
+                          found.x[own])
+        else:
+            cosines = np.clip(np.sum(normals * boundary.normal[nodes], axis=1), -1, 1)
+            turns = np.array([boundary.turn.get(node, 0) for node in nodes])
+            verdict.demand(
+                np.all((np.degrees(np.arccos(cosines)) <= turns + 1)[own]),
+                "a normal points away from those of the faces around its node")
 
 
 # The law.
@@ -146,9 +153,8 @@ def wrong_slip(found):
 def wrong_states(found):
     """What is not as nodes are said to be, by name."""
     state, unit = found.level.contact_states, found.contact_unit
-    rubs = found.can_slide & (found.level.friction_law != "none")
-    if found.level.friction_law == "Coulomb":
-        rubs &= state > 0
+    rubs = found.can_slide & (found.law != "none")
+    rubs &= (state > 0) | (found.law != "Coulomb")
     # A prescribed component of the slip leaves but a share of the bound to the others.
     share = np.where(found.slip > 0, np.linalg.norm(found.direction, axis=1), 1)
     missing = np.maximum(found.bound * share - found.drag, 0)
@@ -172,12 +178,13 @@ def check_contact(verdict, found, tolerance):
     level, x = found.level, found.x
     verdict.check("penetration", depth(found), tolerance,
                   "a node is inside of the obstacle", x)
-    others = left_out(found)
-    places = level.vertices[others]
-    depths = level.obstacle.depth(places + found.u[others])
     per_length = np.max(found.stiffness_n * found.zone / found.contact_unit, initial=0)
-    verdict.check("penetration", depths * per_length, tolerance,
-                  "a node that is left out is inside of the obstacle", places)
+    for contact in level.contacts:
+        others = left_out(found) & (found.boundary.section == contact.number)
+        places = level.vertices[others]
+        depths = contact.obstacle.depth(places + found.u[others])
+        verdict.check("penetration", depths * per_length, tolerance,
+                      "a node that is left out is inside of the obstacle", places)
     verdict.check("tension", pulling(found), tolerance, "the obstacle pulls", x)
     verdict.check("tension", at_distance(found), tolerance,
                   "the obstacle pushes from a distance", x)
@@ -196,7 +203,8 @@ def check_states(verdict, found, tolerance):
     x, state = found.x, found.level.contact_states
     verdict.demand(np.all(np.isin(state, (0, 1, 2))), "a contact node has no known state",
                    "states")
-    verdict.demand(found.level.friction_law != "none" or not np.any(state == 2),
+    verdict.demand(any(contact.friction_law != "none" for contact in
+                       found.level.contacts) or not np.any(state == 2),
                    "a node is said to stick, and there is no friction", "states")
     wrong = wrong_states(found)
     for name, sentence in (
@@ -266,9 +274,14 @@ def check_reported_forces(verdict, found, reported, tolerance):
     if not forces:
         return
     normals = level.contact_normals
-    contact = -found.pressing[:, None] * normals - found.r_T
-    mine = {"contact": contact.sum(axis=0), "contact_normal": found.pressing.sum(),
-            "contact_tangential": -found.r_T.sum(axis=0)}
+    contact, mine = -found.pressing[:, None] * normals - found.r_T, {}
+    for part in level.contacts:
+        own, name = level.of_contact(part), "contact"
+        name += "" if part.number == 1 else f"_{part.number}"
+        if part.contact_boundary >= 0:
+            mine.update({name: contact[own].sum(axis=0),
+                         name + "_normal": found.pressing[own].sum(),
+                         name + "_tangential": -found.r_T[own].sum(axis=0)})
     others = -found.r.copy()
     others[level.contact_nodes] -= contact
     others[~level.is_prescribed] = 0
@@ -300,9 +313,9 @@ def check_reported_forces(verdict, found, reported, tolerance):
         if theirs is not None:
             verdict.check(None, np.abs(theirs - value).max() / (largest or 1.), tolerance,
                           f"the force '{name}' is reported to be {theirs} and is {value}")
-    total = sum((np.asarray(mine[name]) for name in
-                 ("contact", "all reactions", "all tractions", "body_force")
-                 if name in mine), np.zeros(level.dim))
+    total = contact.sum(axis=0) + sum(
+        (mine[name] for name in ("all reactions", "all tractions", "body_force")
+         if name in mine), np.zeros(level.dim))
     verdict.check(None, np.linalg.norm(total) / (largest or 1.), tolerance,
                   "the forces on the body do not balance")
 

@@ -1,4 +1,4 @@
-"""The boundary that may touch the obstacle."""
+"""The boundary that may touch an obstacle."""
 
 import numpy as np
 
@@ -14,11 +14,17 @@ class ContactBoundary:
     normal   unit vector outwards, the mean of the faces around the node (nodes x dim)
     turn     a dictionary with the angle in degrees by which the boundary turns there
 
-    nodes has the numbers themselves, and problem a sentence or None."""
+    nodes has the numbers themselves, section for each node of the mesh that of the
+    scene that speaks of it (zero if none does), and problem a sentence or None."""
 
     def __init__(self, level, hanging):
         dim, n = level.dim, level.n_nodes
-        faces = level.boundary_faces[level.boundary_ids == level.contact_boundary]
+        faces = level.boundary_faces[np.isin(
+            level.boundary_ids, [contact.contact_boundary for contact in level.contacts])]
+        self.section = np.zeros(n, int)
+        for contact in level.contacts:
+            own = level.boundary_ids == contact.contact_boundary
+            self.section[level.boundary_faces[own]] = contact.number
         points, weights = gauss_points(2, dim - 1)
         values, _ = corner_functions(points)
         vectors = area_vectors(level.vertices[faces], points) if len(faces) else (

@@ -63,9 +63,13 @@ def read_level(text, path):
     """What the run wrote of a level, and the scene in its dimension."""
     level = Level(path)
     scene = SceneText(text, level.dim)
-    if scene["Obstacle/Kind"] == "surface":
-        # Which is nothing but its expression.
-        level.obstacle = scene.obstacle(np.linalg.norm(np.ptp(level.vertices, axis=0)))
+    sections = scene.sections("Obstacle")
+    for contact in level.contacts:
+        section = sections.get(contact.number)
+        if section is not None and scene[section + "/Kind"] == "surface":
+            # Which is nothing but its expression.
+            contact.obstacle = scene.obstacle(
+                np.linalg.norm(np.ptp(level.vertices, axis=0)), section)
     return level, scene
 
 

@@ -26,6 +26,7 @@ class Recomputed:
     r_T, drag    tangential residual (k x dim) without directions in which the
                  displacement is prescribed, whose force is a reaction; its length
     can_slide    whether a tangential direction is left free
+    law          of friction, by name
     bound        largest friction: F times the normal force, or what is given
     direction    unit vector of the slip, without prescribed directions; zero at rest
     measure      of the boundary that belongs to the node
@@ -62,7 +63,10 @@ class Recomputed:
                                  self.level.contact_normals)
         prescribed = level.is_prescribed[nodes]
         self.x, self.u_c, r_c = level.vertices[nodes], self.u[nodes], self.r[nodes]
-        self.gap = level.obstacle.gap(self.x, normals)
+        self.gap = np.full(len(nodes), np.inf)
+        for contact in level.contacts:
+            own = level.of_contact(contact)
+            self.gap[own] = contact.obstacle.gap(self.x[own], normals[own])
         u_n = np.sum(self.u_c * normals, axis=1)
         self.room = self.gap - u_n
         self.pressing = np.sum(r_c * normals, axis=1)
@@ -77,11 +81,13 @@ class Recomputed:
         self.direction = np.where(prescribed, 0, self.direction)
 
         self.measure = self.boundary.measure[nodes]
-        self.bound = np.zeros(len(nodes))
-        if level.friction_law == "Coulomb":
-            self.bound = level.friction_coefficient * np.maximum(self.pressing, 0)
-        elif level.friction_law == "Tresca":
-            self.bound = level.friction_bounds * self.measure
+        self.bound, self.law = np.zeros(len(nodes)), level.at_contact_nodes(
+            "friction_law")
+        rubs = self.law == "Coulomb"
+        self.bound[rubs] = (level.coefficients() * np.maximum(self.pressing, 0))[rubs]
+        given = self.law == "Tresca"
+        if given.any():
+            self.bound[given] = (level.friction_bounds * self.measure)[given]
 
     def _find_scales(self, diagonal):
         """diagonal: traces of the diagonal blocks of A, with hanging nodes not yet
@@ -110,9 +116,9 @@ class Recomputed:
         face = size**((level.dim - 1) / level.dim)
         touches = level.contact_states > 0
         self.peak_pressure = np.max((self.pressing / self.measure)[touches], initial=0)
-        if level.friction_law == "Tresca":
-            self.peak_pressure = max(self.peak_pressure,
-                                     np.max(self.bound / self.measure, initial=0))
+        given = self.law == "Tresca"
+        self.peak_pressure = max(self.peak_pressure, np.max(
+            (self.bound / self.measure)[given], initial=0))
         rows = Rows(level, nodes, self.hanging)
         inside = rows.forces_of_neighbours(self.u) / face[nodes]
         if not touches.any():

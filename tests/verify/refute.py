@@ -134,10 +134,11 @@ def set_state(old, new, tight=False):
 
 def move_obstacle(distance):
     def change(level, _):
-        obstacle = level.obstacle
-        obstacle.planes = [(p + distance * n, n) for p, n in obstacle.planes]
-        obstacle.rods = [(c, a, r - side * distance, length, side)
-                         for c, a, r, length, side in obstacle.rods]
+        for contact in level.contacts:
+            obstacle = contact.obstacle
+            obstacle.planes = [(p + distance * n, n) for p, n in obstacle.planes]
+            obstacle.rods = [(c, a, r - side * distance, length, side)
+                             for c, a, r, length, side in obstacle.rods]
     return change
 
 
@@ -165,7 +166,7 @@ def remove_contact_node(level, _):
     """One that touches."""
     keep = np.ones(len(level.contact_nodes), bool)
     keep[np.flatnonzero(level.contact_states > 0)[0]] = False
-    for name in ("contact_nodes", "contact_normals", "contact_states",
+    for name in ("contact_nodes", "contact_normals", "contact_states", "contact_sections",
                  "friction_bounds", "friction_coefficient"):
         # One that does not vary is a number.
         if np.ndim(getattr(level, name)) > 0:

@@ -10,8 +10,20 @@ class NotReadable(Exception):
     """One sentence that says what cannot be read."""
 
 
+# What verify-NN.h5 says of each contact boundary.
+OF_CONTACT = ("contact_boundary", "contact_normal", "friction_law",
+              "friction_coefficient")
+
+
+class FurtherContact:
+    """What is said of the section 'Contact 2', or of one with a higher number, under
+    the names that a Level has for those of the section 'Contact'."""
+
+
 class Level:
-    """What verify-NN.h5 holds, under the names that it has there."""
+    """What verify-NN.h5 holds, under the names that it has there. contacts are the
+    contact boundaries: the level itself, and a FurtherContact for each of the others;
+    a number says which section they belong to."""
 
     def __init__(self, path):
         sentence = (f"'{path}' cannot be read: it is no file that "
@@ -19,9 +31,16 @@ class Level:
         try:
             with h5py.File(path) as file:
                 for name in ("dimension", "level", "youngs_modulus", "poisson_ratio",
-                             "volumetric_strain", "contact_boundary", "contact_normal",
-                             "friction_law", "friction_coefficient"):
+                             "volumetric_strain", *OF_CONTACT):
                     setattr(self, name, file.attrs[name])
+                self.number, self.contacts = 1, [self]
+                for number in range(2, 100):
+                    if f"contact_boundary_{number}" in file.attrs:
+                        contact = FurtherContact()
+                        contact.number = number
+                        for name in OF_CONTACT:
+                            setattr(contact, name, file.attrs[f"{name}_{number}"])
+                        self.contacts.append(contact)
                 data = {name: item[()] for name, item in file.items()}
             self._take(data)
         except (OSError, KeyError, ValueError, IndexError) as error:
@@ -69,17 +88,23 @@ class Level:
         self.contact_nodes = nodes("contact_nodes", 1)
         self.contact_normals = rows("contact_normals", dim)
         self.contact_states = rows("contact_states", 1, int)
-        # Where it varies, one per contact node.
+        # Where it varies somewhere, one per contact node.
         self.friction_coefficient = data.get("friction_coefficients",
                                              self.friction_coefficient)
         self.friction_bounds = data.get("friction_bounds")
-        self.obstacle = Obstacle(
-            list(zip(rows("plane_points", dim), rows("plane_normals", dim))),
-            [(c, a, r, length if length > 0 else np.inf, side)
-             for c, a, r, length, side in zip(
-                 rows("rod_centers", dim), rows("rod_axes", dim), rows("rod_radii", 1),
-                 rows("rod_lengths", 1), rows("rod_sides", 1))])
+        for contact in self.contacts:
+            end = "" if contact.number == 1 else f"_{contact.number}"
+            contact.obstacle = Obstacle(
+                list(zip(rows("plane_points" + end, dim),
+                         rows("plane_normals" + end, dim))),
+                [(c, a, r, length if length > 0 else np.inf, side)
+                 for c, a, r, length, side in zip(
+                     rows("rod_centers" + end, dim), rows("rod_axes" + end, dim),
+                     rows("rod_radii" + end, 1), rows("rod_lengths" + end, 1),
+                     rows("rod_sides" + end, 1))])
         k = len(self.contact_nodes)
+        self.contact_sections = np.asarray(
+            data.get("contact_sections", np.ones(k))).astype(int)
         if (len(self.displacement) != n
                 or len(self.cell_ids) != len(self.cells)
                 or len(self.cell_regions) != len(self.cells)
@@ -89,8 +114,10 @@ class Level:
                 or len(self.hanging_nodes) != len(self.hanging_weights)
                 or len(self.tractions) != 4**(dim - 1) * len(self.traction_faces)
                 or len(self.contact_normals) != k or len(self.contact_states) != k
+                or len(self.contact_sections) != k
+                or not set(self.contact_sections) <= {c.number for c in self.contacts}
                 or np.shape(self.friction_coefficient) not in ((), (k,))
-                or (self.friction_law == "Tresca" and k > 0
+                or (any(c.friction_law == "Tresca" for c in self.contacts) and k > 0
                     and np.shape(self.friction_bounds) != (k,))
                 or (self.body_force is not None and
                     self.body_force.shape != (2**dim * len(self.cells), dim))):
@@ -101,6 +128,23 @@ class Level:
         self.values = np.zeros((n, dim))
         self.is_prescribed[tuple(self.prescribed.T)] = True
         self.values[tuple(self.prescribed.T)] = self.prescribed_values
+
+
+    def of_contact(self, contact):
+        """Which contact nodes belong to a contact boundary."""
+        return self.contact_sections == contact.number
+
+    def at_contact_nodes(self, name):
+        """A property of contact boundaries at each contact node."""
+        values = np.array([getattr(contact, name) for contact in self.contacts])
+        numbers = np.array([contact.number for contact in self.contacts])
+        return values[np.searchsorted(numbers, self.contact_sections)]
+
+    def coefficients(self):
+        """Of friction, at each contact node."""
+        if np.ndim(self.friction_coefficient):
+            return self.friction_coefficient
+        return self.at_contact_nodes("friction_coefficient")
 
 
 def read_history(directory):

@@ -48,30 +48,35 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
                        "'Material/Regions' has other cells than the scene says")
         same("Material/Regions", np.array(materials, float), level.materials)
 
-    def friction():
-        law, F = scene["Contact/Friction law"], scene.names["F"]
+    def friction(contact, section, obstacle):
+        law, F = scene[section + "/Friction law"], scene.coefficient(section)
         varies = isinstance(F, str)
         if law == "Coulomb" and not varies and F == 0:
             law = "none"
         # Without an obstacle there is nothing to point to.
-        normal = ("body" if scene["Obstacle/Kind"] == "none"
-                  else scene["Contact/Contact normal"])
+        normal = ("body" if scene[obstacle + "/Kind"] == "none"
+                  else scene[section + "/Contact normal"])
         # A name of the mesh file has become its number.
-        boundary = scene["Contact/Boundary id"]
+        boundary = scene[section + "/Boundary id"]
         is_same = (not boundary.lstrip("-").isdigit()
-                   or int(boundary) == level.contact_boundary)
-        verdict.demand(law == level.friction_law and normal == level.contact_normal
+                   or int(boundary) == contact.contact_boundary)
+        verdict.demand(law == contact.friction_law and normal == contact.contact_normal
                        and is_same,
-                       "section 'Contact' is not what the scene says")
-        nodes = X[level.contact_nodes] @ scene.rotation
+                       f"section '{section}' is not what the scene says")
+        own = level.of_contact(contact)
+        nodes = X[level.contact_nodes[own]] @ scene.rotation
         if law == "Coulomb":
             if varies:
                 F = np.broadcast_to(scene.evaluate(F, nodes), len(nodes))
-            same("Contact/Friction coefficient", F, level.friction_coefficient)
-        if law == "Tresca" and len(level.contact_nodes):
-            bounds = scene.evaluate(scene["Contact/Friction bound"], nodes)
-            same("Contact/Friction bound", np.broadcast_to(bounds, len(nodes)),
-                 level.friction_bounds)
+            elif np.ndim(level.friction_coefficient):
+                F = np.full(len(nodes), F)
+            same(section + "/Friction coefficient", F,
+                 level.friction_coefficient[own] if np.ndim(level.friction_coefficient)
+                 else contact.friction_coefficient)
+        if law == "Tresca" and len(nodes):
+            bounds = scene.evaluate(scene[section + "/Friction bound"], nodes)
+            same(section + "/Friction bound", np.broadcast_to(bounds, len(nodes)),
+                 level.friction_bounds[own])
 
     def boundary_id(key):
         """Names of groups are known to the mesh file only."""
@@ -128,9 +133,17 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
 
     attempt("Material", material)
     attempt("Material/Regions", regions)
-    attempt("Contact/Friction bound", friction)
+    sections, obstacles = scene.sections("Contact"), scene.sections("Obstacle")
+    verdict.demand([*sections] == [contact.number for contact in level.contacts],
+                   "there are other sections 'Contact' than the scene has")
+    pairs = [(contact, sections[contact.number], obstacles[contact.number])
+             for contact in level.contacts if contact.number in sections]
+    for contact, section, obstacle in pairs:
+        attempt(section + "/Friction bound",
+                lambda c=contact, s=section, o=obstacle: friction(c, s, o))
     attempt("Boundary conditions/Displacement", displacement)
     attempt("Boundary conditions/Body force' or 'Traction", loads)
-    attempt("Obstacle", lambda: same("Obstacle", scene.obstacle().numbers(),
-                                     level.obstacle.numbers()))
+    for contact, _, obstacle in pairs:
+        attempt(obstacle, lambda c=contact, o=obstacle: same(
+            o, scene.obstacle(section=o).numbers(), c.obstacle.numbers()))
     return unknown

@@ -28,7 +28,7 @@ class SceneText:
             "Material/Poisson ratio")
         self.names = {"E": E, "nu": nu, "lambda": E * nu / (1 + nu) / (1 - 2 * nu),
                       "mu": E / 2 / (1 + nu), "pi": np.pi,
-                      "F": self._coefficient()}
+                      "F": self.coefficient("Contact")}
         for part in split(self["Scene/Constants"], ";"):
             name, _, expression = part.partition("=")
             try:
@@ -52,9 +52,15 @@ class SceneText:
     def number(self, entry):
         return float(self[entry])
 
-    def _coefficient(self):
+    def sections(self, base):
+        """'Contact', and then 'Contact 2' and so on, by number."""
+        found = {entry.split("/")[0] for entry in self.entries}
+        return {1: base, **{number: f"{base} {number}" for number in range(2, 100)
+                            if f"{base} {number}" in found}}
+
+    def coefficient(self, section):
         """A number, or the text of an expression."""
-        text = self["Contact/Friction coefficient"]
+        text = self[section + "/Friction coefficient"]
         try:
             return float(text)
         except ValueError:
@@ -84,15 +90,18 @@ class SceneText:
             key, _, components = part.partition(":")
             yield key.strip(), split(components, ",")
 
-    def obstacle(self, body_size=1.):
+    def obstacle(self, body_size=1., section="Obstacle"):
         """An Obstacle, like that of a verify-NN.h5. What a function says is looked for
         within the size of the body."""
-        kind, dim = self["Obstacle/Kind"], self.dim
+        said = {name: self[section + "/" + name] for name in
+                ("Kind", "Point", "Normal", "Function", "Length", "Radius", "Axes",
+                 "Centers", "Side")}
+        kind, dim = said["Kind"], self.dim
         if kind == "none":
             return Obstacle()
         if kind == "plane":
-            point = self.numbers(self["Obstacle/Point"])
-            normal = self.numbers(self["Obstacle/Normal"])
+            point = self.numbers(said["Point"])
+            normal = self.numbers(said["Normal"])
             if len(point) == 0:
                 point = np.zeros(dim)
             if len(normal) == 0:
@@ -100,17 +109,17 @@ class SceneText:
             normal /= np.linalg.norm(normal)
             return Obstacle(planes=[(self.rotation @ point, self.rotation @ normal)])
         if kind == "surface":
-            text = self["Obstacle/Function"]
+            text = said["Function"]
 
             def value(points):
                 return np.broadcast_to(self.evaluate(text, points @ self.rotation),
                                        len(points)).astype(float)
 
             return Obstacle(surfaces=[Surface(value, body_size)])
-        length = self.numbers(self["Obstacle/Length"])
-        radii = [self.numbers(part)[0] for part in split(self["Obstacle/Radius"], ";")]
-        rods, axes = [], split(self["Obstacle/Axes"], ";")
-        for i, center in enumerate(split(self["Obstacle/Centers"], ";")):
+        length = self.numbers(said["Length"])
+        radii = [self.numbers(part)[0] for part in split(said["Radius"], ";")]
+        rods, axes = [], split(said["Axes"], ";")
+        for i, center in enumerate(split(said["Centers"], ";")):
             axis = np.zeros(dim)
             if dim == 3 and kind == "rods":
                 axis = self.numbers(axes[i])
@@ -118,5 +127,5 @@ class SceneText:
             rods.append((self.rotation @ self.numbers(center), self.rotation @ axis,
                          radii[i if len(radii) > 1 else 0],
                          length[0] if len(length) else np.inf,
-                         -1. if self["Obstacle/Side"] == "inside" else 1.))
+                         -1. if said["Side"] == "inside" else 1.))
         return Obstacle(rods=rods)
