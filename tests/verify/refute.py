@@ -34,6 +34,7 @@ RUNS = {
     "wheel": (2, ["Refinement/Levels=3"]),
     "pin": (2, ["Refinement/Levels=2"]),
     "rough": (2, ["Refinement/Levels=1"]),
+    "wall": (2, ["Refinement/Levels=3"]),
     "crossing-rods": (3, ["Refinement/Maximum dofs=1500"]),
     "half-ball": (3, ["Refinement/Maximum dofs=300"]),
 }
@@ -173,6 +174,36 @@ def remove_contact_node(level, _):
             setattr(level, name, getattr(level, name)[keep])
 
 
+def change_further(name, factor):
+    """Of the second contact boundary."""
+    def change(level, _):
+        contact = level.contacts[1]
+        setattr(contact, name, getattr(contact, name) * factor)
+    return change
+
+
+def move_further(distance):
+    def change(level, _):
+        obstacle = level.contacts[1].obstacle
+        obstacle.planes = [(p + distance * n, n) for p, n in obstacle.planes]
+    return change
+
+
+def swap_sections(level, _):
+    level.contact_sections[:] = 3 - level.contact_sections
+
+
+def swap_one_section(level, _):
+    level.contact_sections[0] = 3 - level.contact_sections[0]
+
+
+def report_force(name, factor):
+    def change(_, row):
+        row["forces"] = dict(row["forces"])
+        row["forces"][name] = row["forces"][name] * factor
+    return change
+
+
 def turn_normal(state, degrees):
     """Towards the coordinate axis after the one that it is nearest to."""
     def change(level, _):
@@ -218,9 +249,9 @@ def change_mesh(level, _):
 
 
 def check_changes(cases):
-    hertz, rods, tresca, ice, patch, mean, wheel = (
+    hertz, rods, tresca, ice, patch, mean, wheel, wall = (
         cases[name] for name in ("hertz", "crossing-rods", "tresca", "ice", "stick-slip",
-                                 "incompressible", "wheel"))
+                                 "incompressible", "wheel", "wall"))
     deep = {case.name: 1e-4 * np.abs(case.level.displacement).max()
             for case in cases.values()}
     for case in (hertz, rods, tresca):
@@ -245,6 +276,19 @@ def check_changes(cases):
                     ["states"])
         case.expect("normal of a node that slides", turn_normal(1, 1.),
                     ["tension", "cone", "slip", "states"])
+    for factor in (.999, 1.001):
+        wall.expect("friction of the wall", change_further("friction_coefficient",
+                                                           factor), ["cone", "states"])
+    wall.expect("the wall is nearer", move_further(-deep["wall"]), ["penetration"])
+    wall.expect("the wall is farther", move_further(deep["wall"]), ["states"])
+    wall.expect("floor and wall are mistaken for each other", swap_sections, ["given"])
+    wall.expect("a node is said to be on the other one", swap_one_section, ["given"])
+    wall.expect("the law of the wall is another one",
+                lambda level, _: setattr(level.contacts[1], "friction_law", "none"),
+                ["given"])
+    for name in ("contact", "contact_2", "contact_2_normal", "contact_tangential",
+                 "traction_4"):
+        wall.expect(f"reported force {name}", report_force(name, 1.0001))
     for case in (hertz, rods, ice, patch, mean):
         case.expect("less friction", scale("friction_coefficient", .999), ["cone"])
         case.expect("more friction", scale("friction_coefficient", 1.001),
