@@ -40,6 +40,10 @@ namespace Friction
     /// Coulomb the node's share of F times the one found.
     double friction_coefficient;
 
+    /// That of the end of the load step before, from which friction counts
+    /// slip, see ContactNode::slip_origin; null in a first step.
+    const VectorType *previous_displacement = nullptr;
+
     MPI_Comm
     communicator() const
     {

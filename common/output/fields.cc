@@ -322,7 +322,8 @@ namespace Friction
 
 
 
-    // Where there is contact, the tangential part of the displacement.
+    // Where there is contact, the tangential part of the displacement, counted
+    // from where friction does.
     template <int dim>
     Tensor<1, dim>
     slip_of_point(const Tensor<1, dim>   &displacement,
@@ -646,12 +647,18 @@ namespace Friction
                 const ContactData<dim> data =
                   data_at(face->vertex_dof_index(v, 0));
                 // The displacement is known everywhere.
-                Tensor<1, dim> u;
+                Tensor<1, dim> u, from_origin;
                 for (unsigned int c = 0; c < dim; ++c)
-                  u[c] = displacement(face->vertex_dof_index(v, c));
+                  {
+                    const auto dof = face->vertex_dof_index(v, c);
+                    u[c]           = displacement(dof);
+                    from_origin[c] = fields.slip_origin == nullptr
+                      ? u[c]
+                      : u[c] - (*fields.slip_origin)(dof);
+                  }
                 auto field = piece.point_fields.begin();
                 append_vector(u, *field++);
-                append_vector(slip_of_point(u, data), *field++);
+                append_vector(slip_of_point(from_origin, data), *field++);
                 for (unsigned int k = 0; k < n_contact_vectors; ++k)
                   {
                     Tensor<1, dim> vector;

@@ -43,6 +43,10 @@ namespace Friction
 
     /// Estimated errors, one value per active cell; or nothing.
     const dealii::Vector<float> *cell_errors = nullptr;
+
+    /// Likewise the displacement that slip counts from, or nothing.
+    const dealii::LinearAlgebra::distributed::Vector<double> *slip_origin =
+      nullptr;
   };
 
 
@@ -73,7 +77,8 @@ namespace Friction
    *
    * Contact boundary: the vectors `displacement`, `traction` (of the obstacle
    * on the body), `tangential_traction`, `normal`, and `slip`, the tangential
-   * displacement where there is contact; the numbers `pressure` (positive in
+   * displacement where there is contact, in a later load step what it has
+   * changed by in this step; the numbers `pressure` (positive in
    * compression), `friction_bound` (what friction allows of
    * `tangential_traction`), `gap`, `distance` (gap minus normal displacement, 0
    * in contact) and `state` (0 open, 1 sliding, 2 sticking). Nodal tractions

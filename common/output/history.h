@@ -179,13 +179,19 @@ namespace Friction
     /// 0 open, 1 sliding, 2 sticking.
     unsigned int state = 0;
 
+    /// The tangential displacement that slip counts from, zero but in later
+    /// load steps; not written to the file.
+    dealii::Tensor<1, dim> slip_origin;
+
     /// By how much the node has slid along the obstacle: its tangential
-    /// displacement if it is in contact, and zero if it is not.
+    /// displacement if it is in contact, and zero if it is not. In a later load
+    /// step, by how much it has done so in this step.
     dealii::Tensor<1, dim>
     slip() const
     {
-      return state == 0 ? dealii::Tensor<1, dim>()
-                        : displacement - (displacement * normal) * normal;
+      return state == 0
+        ? dealii::Tensor<1, dim>()
+        : displacement - (displacement * normal) * normal - slip_origin;
     }
 
     template <class Archive>
@@ -193,7 +199,7 @@ namespace Friction
     serialize(Archive &archive, const unsigned int /*version*/)
     {
       archive &dof &point &normal &gap &displacement &force &measure;
-      archive &friction_bound                               &state;
+      archive &friction_bound &state                        &slip_origin;
     }
   };
 

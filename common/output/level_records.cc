@@ -176,9 +176,10 @@ namespace Friction
         ContactRecord<dim>      row;
         row.dof   = constraints.partitioner()->local_to_global(dim * node.node);
         row.point = node.point;
-        row.normal  = node.normal();
-        row.gap     = node.gap;
-        row.measure = node.measure;
+        row.normal      = node.normal();
+        row.gap         = node.gap;
+        row.measure     = node.measure;
+        row.slip_origin = node.slip_origin;
         for (unsigned int d = 0; d < dim; ++d)
           row.displacement[d] = displacement.local_element(dim * node.node + d);
         row.force = contact_force(node, report.residual);

@@ -18,7 +18,7 @@ namespace Friction
   namespace
   {
     // To be increased whenever what is in a checkpoint changes.
-    constexpr unsigned int checkpoint_format = 3;
+    constexpr unsigned int checkpoint_format = 4;
 
 
 
@@ -152,7 +152,8 @@ namespace Friction
                             discretization.dof_handler(),
                             discretization.hanging_nodes(),
                             displacement,
-                            cell_errors.size() > 0 ? &cell_errors : nullptr},
+                            cell_errors.size() > 0 ? &cell_errors : nullptr,
+                            discretization.slip_origin()},
                            records.own_contact);
       }
     if (parameters.output.verification)

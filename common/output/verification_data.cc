@@ -313,6 +313,7 @@ namespace Friction
     void
     add_contact(ProblemTables                         &tables,
                 const Scene<dim>                      &scene,
+                const bool                             has_slip_origin,
                 const std::vector<ContactRecord<dim>> &own_contact)
     {
       for (const ContactRecord<dim> &record : own_contact)
@@ -321,6 +322,8 @@ namespace Friction
                              {static_cast<unsigned int>(record.dof / dim)});
           tables.add_numbers("contact_states", {record.state});
           tables.add_vector("contact_normals", record.normal);
+          if (has_slip_origin)
+            tables.add_vector("slip_origins", record.slip_origin);
           if (scene.varying_coefficient() != nullptr)
             tables.add_value("friction_coefficients",
                              scene.varying_coefficient()->value(record.point));
@@ -489,7 +492,10 @@ namespace Friction
     ProblemTables own;
     add_cells_together(own, discretization);
     add_nodes(own, discretization, displacement);
-    add_contact(own, discretization.scene(), own_contact);
+    add_contact(own,
+                discretization.scene(),
+                discretization.slip_origin() != nullptr,
+                own_contact);
     gather_and_write(directory.file(verification_file_name(level)),
                      level,
                      discretization,

@@ -46,6 +46,8 @@ namespace Friction
    * - `contact_nodes`: the nodes that may touch;
    * - `contact_normals`: dim components of their unit normals;
    * - `contact_states`: 0 open, 1 sliding, 2 sticking;
+   * - `slip_origins`: in later load steps, the dim components of the tangential
+   *   displacement that friction counts slip from (length);
    * - `friction_coefficients`: with Coulomb's law, their coefficients, where
    *   these vary;
    * - `friction_bounds`: with Tresca's law, their largest tangential stress;

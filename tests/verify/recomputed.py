@@ -22,7 +22,8 @@ class Recomputed:
     x, u_c       points and displacements (k x dim)
     gap, room    distance of the obstacle along the normal, before and after
     pressing     normal force, positive where the obstacle pushes
-    u_T, slip    tangential displacement (k x dim) and its length
+    u_T, slip    tangential displacement (k x dim), counted from where friction does,
+                 and its length
     r_T, drag    tangential residual (k x dim) without directions in which the
                  displacement is prescribed, whose force is a reaction; its length
     can_slide    whether a tangential direction is left free
@@ -67,7 +68,7 @@ class Recomputed:
         self.room = self.gap - u_n
         self.pressing = np.sum(r_c * normals, axis=1)
 
-        self.u_T = self.u_c - u_n[:, None] * normals
+        self.u_T = self.u_c - u_n[:, None] * normals - level.slip_origins
         self.r_T = r_c - self.pressing[:, None] * normals
         self.r_T = np.where(prescribed, 0, self.r_T)
         self.can_slide = (~prescribed).sum(axis=1) > 1

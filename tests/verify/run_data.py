@@ -69,6 +69,10 @@ class Level:
         self.contact_nodes = nodes("contact_nodes", 1)
         self.contact_normals = rows("contact_normals", dim)
         self.contact_states = rows("contact_states", 1, int)
+        # In later load steps, what slip counts from.
+        self.has_slip_origins = "slip_origins" in data
+        self.slip_origins = (rows("slip_origins", dim) if self.has_slip_origins
+                             else np.zeros((len(self.contact_nodes), dim)))
         # Where it varies, one per contact node.
         self.friction_coefficient = data.get("friction_coefficients",
                                              self.friction_coefficient)
@@ -89,6 +93,7 @@ class Level:
                 or len(self.hanging_nodes) != len(self.hanging_weights)
                 or len(self.tractions) != 4**(dim - 1) * len(self.traction_faces)
                 or len(self.contact_normals) != k or len(self.contact_states) != k
+                or len(self.slip_origins) != k
                 or np.shape(self.friction_coefficient) not in ((), (k,))
                 or (self.friction_law == "Tresca" and k > 0
                     and np.shape(self.friction_bounds) != (k,))
