@@ -186,6 +186,9 @@ namespace StepFriction3d
   // discrete solutions grow without bound, and the estimator is right to find
   // the largest errors always in the same place. <code>Refinement/Contact
   // zone</code> refines all cells in contact besides.
+  //
+  // If the scene has a history (<code>Load steps/Times</code>), the later steps
+  // are solved on the last mesh, each from what the one before has found.
   bool
   run(const Parameters &parameters, const Start start)
   {
@@ -200,6 +203,11 @@ namespace StepFriction3d
       {
         nest.refine();
         output.save_checkpoint(nest);
+      }
+    while (nest.report().converged && nest.begin_next_load_step())
+      {
+        output.begin_load_step(nest.scene());
+        solve(nest, output);
       }
 
     output.add_end(nest);

@@ -23,7 +23,12 @@ namespace Friction
    */
   struct LevelRecord
   {
-    unsigned int level            = 0;
+    unsigned int level = 0;
+
+    /// The load step, from 1 on, and its time; see RunDescription.
+    unsigned int load_step = 1;
+    double       time      = 0.;
+
     unsigned int cells            = 0;
     unsigned int dofs             = 0;
     unsigned int contact_nodes    = 0;
@@ -94,7 +99,8 @@ namespace Friction
     void
     serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &level &cells &dofs &contact_nodes               &sticky_nodes;
+      archive &level &load_step &time &cells                   &dofs;
+      archive &contact_nodes                                   &sticky_nodes;
       archive &outer_iterations &cycles &attempts &contraction &rho_tau;
       archive &rho_tau_contraction &energy &algebraic_error    &normal_force;
       archive                                   &tangential_force;
@@ -210,6 +216,9 @@ namespace Friction
     std::string           parameters; ///< the full text
     std::string           version;    ///< of the program
     Parameters::UnitNames units = {};
+
+    /// Whether there are several load steps.
+    bool has_load_steps = false;
   };
 
   /**
@@ -227,6 +236,12 @@ namespace Friction
    * (one-dimensional). A level without contact nodes has no group there, since
    * HDF5 through deal.II has no empty datasets; for the same reason `/cycles`
    * exists only once there was a cycle.
+   *
+   * With several load steps `/levels` has `load_step` and `time` as well, the
+   * number and the time of the step. The solutions of later steps, on the last
+   * mesh of the first one, continue the count of levels. `/steps` then has the
+   * same datasets as `/levels`, but only the values of the last solution of
+   * each step.
    *
    * Each dataset has the attribute `label`, what it is in a few words, and
    * `units` if it has a unit with a name, see unit_of(). Those of

@@ -56,10 +56,13 @@ namespace Friction
                                           : Console::Times::hidden,
                   parameters.output.verbosity == Verbosity::quiet,
                   communicator)
-    , history(
-        directory.file("history.h5"),
-        {parameters.name, parameters.text, version, parameters.output.units},
-        communicator)
+    , history(directory.file("history.h5"),
+              {parameters.name,
+               parameters.text,
+               version,
+               parameters.output.units,
+               scene.n_load_steps() > 1},
+              communicator)
     , fields(directory,
              scene.materials(),
              scene.contact_boundary_id(),
@@ -80,6 +83,22 @@ namespace Friction
     for (const std::string &warning :
          warnings_at_start(discretization, parameters))
       the_console.warning(warning);
+    if (discretization.scene().n_load_steps() > 1)
+      begin_load_step(discretization.scene());
+  }
+
+
+
+  template <int dim>
+  void
+  RunOutput<dim>::begin_load_step(const Scene<dim> &scene)
+  {
+    if (scene.load_step() > 0 && history.levels().back().contact_nodes > 0)
+      the_console.note(describe_quantities(history.levels().back()));
+    std::ostringstream text;
+    text << "Load step " << scene.load_step() + 1 << " of "
+         << scene.n_load_steps() << ", t = " << scene.time() << '.';
+    the_console.note(text.str());
   }
 
 
@@ -153,7 +172,10 @@ namespace Friction
                             discretization.hanging_nodes(),
                             displacement,
                             cell_errors.size() > 0 ? &cell_errors : nullptr,
-                            discretization.slip_origin()},
+                            discretization.slip_origin(),
+                            discretization.scene().n_load_steps() > 1
+                              ? std::optional<double>(record.time)
+                              : std::nullopt},
                            records.own_contact);
       }
     if (parameters.output.verification)

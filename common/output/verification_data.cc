@@ -407,6 +407,11 @@ namespace Friction
                                        ? "Tresca"
                                        : "Coulomb"));
       file.set_attribute("friction_coefficient", scene.friction_coefficient());
+      if (scene.n_load_steps() > 1)
+        {
+          file.set_attribute("load_step", scene.load_step() + 1);
+          file.set_attribute("time", scene.time());
+        }
     }
 
 

@@ -23,7 +23,8 @@ namespace Friction
    * `poisson_ratio`, `volumetric_strain` (`pointwise` or `mean`);
    * `contact_boundary` (boundary id, -1 for none), `contact_normal` (`body` or
    * `obstacle`), `friction_law` (`none`, `Tresca` or `Coulomb`),
-   * `friction_coefficient` (zero where it varies).
+   * `friction_coefficient` (zero where it varies); with several load steps
+   * `load_step` (from 1 on) and its `time`.
    *
    * Datasets, each node of the leaf mesh having the number of its row in
    * `vertices`. Those that would be empty are not there.

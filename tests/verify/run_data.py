@@ -22,6 +22,9 @@ class Level:
                              "volumetric_strain", "contact_boundary", "contact_normal",
                              "friction_law", "friction_coefficient"):
                     setattr(self, name, file.attrs[name])
+                # With several load steps.
+                self.load_step = int(file.attrs.get("load_step", 1))
+                self.time = file.attrs.get("time")
                 data = {name: item[()] for name, item in file.items()}
             self._take(data)
         except (OSError, KeyError, ValueError, IndexError) as error:
