@@ -135,7 +135,7 @@ namespace StepFriction2d
     , triangulation(make_triangulation<dim>(MPI_COMM_WORLD))
     , discretization(scene, *triangulation)
     , state(0, false)
-    , stop(parameters.solver, scene.materials())
+    , stop(parameters.solver)
     , output(parameters, scene, std::cout, version(), MPI_COMM_WORLD)
   {}
 
@@ -162,8 +162,7 @@ namespace StepFriction2d
       {
         level = output.load_checkpoint(*triangulation);
         for (const LevelRecord &record : output.levels())
-          stop.add_level(
-            record.estimated_error, record.dofs, record.contraction);
+          stop.add_level(record.least_error, record.dofs, record.contraction);
       }
     else
       refine_uniformly(*triangulation,
@@ -428,6 +427,7 @@ namespace StepFriction2d
     LevelRecords<dim> records =
       make_level_records(level, discretization, displacement, state, report);
     records.level.estimated_error = estimate.total;
+    records.level.least_error     = estimate.lower_bound;
     records.level.setup_seconds   = setup_seconds;
     records.level.solve_seconds   = solve_seconds;
     if (output.wants_forces())
@@ -476,7 +476,7 @@ namespace StepFriction2d
         if (parameters.refinement.estimate_error || (adaptive && !last))
           estimate =
             estimate_contact_error(discretization, displacement, tractions);
-        stop.add_level(estimate.total,
+        stop.add_level(estimate.lower_bound,
                        discretization.dof_handler().n_dofs(),
                        report.contraction);
         record_level(level, estimate);

@@ -12,26 +12,13 @@ namespace Friction
 
     // How much better than expected a mesh may be.
     constexpr double caution = .5;
-
-    // What the residual estimator may be, in multiples of the error.
-    template <int dim>
-    double
-    largest_overestimation(const Materials<dim> &materials)
-    {
-      double largest = 0;
-      for (const Material &material : materials.of_regions())
-        largest = std::max(largest, material.lambda() / (2. * material.mu()));
-      return (dim == 2 ? 6. : 8.) * std::sqrt(1. + largest);
-    }
   } // namespace
 
 
 
   template <int dim>
-  DiscretizationStop<dim>::DiscretizationStop(const SolverSettings &settings,
-                                              const Materials<dim> &materials)
+  DiscretizationStop<dim>::DiscretizationStop(const SolverSettings &settings)
     : settings(settings)
-    , overestimation(largest_overestimation(materials))
   {}
 
 
@@ -64,13 +51,13 @@ namespace Friction
   template <int dim>
   void
   DiscretizationStop<dim>::add_level(
-    const double                          estimated_error,
+    const double                          error_of_level,
     const dealii::types::global_dof_index n_dofs,
     const double                          contraction)
   {
     if (n_dofs_then > 0)
       pace = contraction > 0 ? contraction : std::min(.5, 2. * pace);
-    error       = estimated_error / overestimation;
+    error       = error_of_level;
     n_dofs_then = n_dofs;
   }
 

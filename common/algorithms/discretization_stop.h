@@ -2,8 +2,6 @@
 #define friction_algorithms_discretization_stop_h
 
 #include <common/parameters/solver_settings.h>
-#include <common/scene/materials.h>
-
 #include <deal.II/base/types.h>
 
 namespace Friction
@@ -13,16 +11,11 @@ namespace Friction
    * iteration is a tenth of that of the discretisation, so that going on would
    * change the sum of both by half a percent.
    *
-   * The error of the discretisation is that of the residual estimator, divided
-   * by the most that this may be larger. A residual is at most the error times
-   * the norm of the stiffness, so that squared stresses divided by
-   * $\lambda+2\mu$ are a bound from below up to a constant that depends on the
-   * shape of the cells; the estimator divides them by $2\mu$. For squares the
-   * constant is 6, for cubes 8 (see the tests of the estimator), and the most
-   * it overestimates that times $\sqrt{(\lambda+2\mu)/(2\mu)}$: 7.9 for squares
-   * and a Poisson ratio of 0.3, and 300 for 0.4999. With several materials it
-   * is the largest of theirs. Where the estimate is better than that, the
-   * iteration goes on a little longer.
+   * The error of the discretisation is taken to be the least that the residual
+   * estimator allows for, ErrorEstimate::lower_bound, and not its estimate,
+   * which may be many times the error: for squares 7.9 times with a Poisson
+   * ratio of 0.3, and 300 times with 0.4999. Where the estimate is better than
+   * that, the iteration goes on a little longer.
    *
    * It is not known before the mesh has been solved. So that of the mesh before
    * is taken, scaled by the rate at which errors fall with the number of
@@ -39,8 +32,7 @@ namespace Friction
   {
   public:
     /** Does nothing unless the settings say so. */
-    DiscretizationStop(const SolverSettings &settings,
-                       const Materials<dim> &materials);
+    explicit DiscretizationStop(const SolverSettings &settings);
 
     /** The settings to solve the next mesh with.
      * @param n_dofs  number of unknowns on it. */
@@ -48,17 +40,17 @@ namespace Friction
     settings_for(const dealii::types::global_dof_index n_dofs) const;
 
     /** Is told of a mesh that has been solved: all of them, in their order.
-     * @param estimated_error  an energy norm; zero if it is not known.
+     * @param error_of_level  an energy norm, ErrorEstimate::lower_bound; zero
+     * if it is not known.
      * @param n_dofs           number of unknowns.
      * @param contraction      of the increments per cycle; zero if there was
      *                         but one. */
-    void add_level(const double                          estimated_error,
+    void add_level(const double                          error_of_level,
                    const dealii::types::global_dof_index n_dofs,
                    const double                          contraction);
 
   private:
     const SolverSettings            settings;
-    const double                    overestimation;
     double                          error = 0; // energy norm; unknown if zero
     dealii::types::global_dof_index n_dofs_then = 0;
     double                          pace        = 0; // unknown if zero

@@ -18,7 +18,7 @@ namespace Friction
     , bilinear_form(form ? form : elasticity<dim>(the_scene.materials()))
     , triangulation(make_triangulation<dim>(communicator))
     , the_discretization(the_scene, *triangulation)
-    , stop(the_parameters.solver, the_scene.materials())
+    , stop(the_parameters.solver)
     , contact_state(0, false)
   {}
 
@@ -144,11 +144,11 @@ namespace Friction
 
   template <int dim>
   void
-  NestedIteration<dim>::add_level(const double estimated_error,
+  NestedIteration<dim>::add_level(const double least_error,
                                   const dealii::types::global_dof_index n_dofs,
                                   const double contraction)
   {
-    stop.add_level(estimated_error, n_dofs, contraction);
+    stop.add_level(least_error, n_dofs, contraction);
   }
 
 
@@ -178,7 +178,7 @@ namespace Friction
   bool
   NestedIteration<dim>::mark(const ErrorEstimate &estimate)
   {
-    stop.add_level(estimate.total,
+    stop.add_level(estimate.lower_bound,
                    the_discretization.dof_handler().n_dofs(),
                    last_report.contraction);
     if (the_parameters.refinement.strategy == RefinementStrategy::uniform)

@@ -109,6 +109,34 @@ namespace Friction
         return result;
       }
 
+      // The least height of the parallelogram or parallelepiped that has the
+      // means of the edges as its own: how far away a side is from the other.
+      double
+      width() const
+      {
+        std::array<Tensor<1, dim>, dim> means;
+        for (unsigned int d = 0; d < dim; ++d)
+          for (unsigned int e = 0; e < n_edges; ++e)
+            for (unsigned int c = 0; c < dim; ++c)
+              means[d][c] += edges[d][e][c] / n_edges;
+        double volume, largest_base = 0.;
+        if constexpr (dim == 2)
+          {
+            volume = cross_product_2d(means[0]) * means[1];
+            for (const Tensor<1, dim> &mean : means)
+              largest_base = std::max(largest_base, mean.norm());
+          }
+        else
+          {
+            volume = cross_product_3d(means[0], means[1]) * means[2];
+            for (unsigned int d = 0; d < dim; ++d)
+              largest_base = std::max(
+                largest_base,
+                cross_product_3d(means[d], means[(d + 1) % dim]).norm());
+          }
+        return std::abs(volume) / largest_base;
+      }
+
       // In deal.II's order.
       std::array<Values, n_corners> corners;
 
@@ -277,8 +305,12 @@ namespace Friction
                                const OnFace<Point<dim>>                 &places,
                                const std::array<double, n_face_corners> &JxW);
 
-      // Book a contribution both where and why it arises.
-      void add(const CellIterator &cell, const double value, double &share);
+      // Book a contribution both where and why it arises, and the part of it
+      // that is certain: see ErrorEstimate::lower_bound.
+      void add(const CellIterator &cell,
+               const double        value,
+               const double        certain_part,
+               double             &share);
 
       double square_of_rounding(const CellIterator &cell) const;
 
@@ -311,8 +343,31 @@ namespace Friction
 
       Vector<double> squared_errors;
       ErrorEstimate  estimate;
-      double         energy = 0.;
+      double         energy = 0., certain = 0.;
     };
+
+
+
+    // A residual is at most the error times the norm of the stiffness, where
+    // the estimate divides by the smallest stiffness.
+    double
+    certain_part_of_material(const Material &material)
+    {
+      return 2. * material.mu() /
+        (2. * material.mu() + std::max(0., material.lambda()));
+    }
+
+
+
+    // And a test function that sees a residual on a side of a cell, or in it,
+    // must fall to zero within the cell's width, where the estimate has the
+    // length of the side or of the cell. (Their diameters are those of the
+    // squares and cubes that the constants below are for.)
+    double
+    certain_part_of_side(const double width, const double diameter, const int n)
+    {
+      return std::min(1., width * std::sqrt(double(n)) / diameter);
+    }
 
 
 
@@ -417,6 +472,9 @@ namespace Friction
                   estimate.contact + estimate.complementarity);
       estimate.energy_norm =
         std::sqrt(Utilities::MPI::sum(energy, communicator));
+      estimate.lower_bound =
+        std::sqrt(Utilities::MPI::sum(certain, communicator)) /
+        (dim == 2 ? 6. : 8.);
 
       estimate.cell_errors.reinit(squared_errors.size());
       for (const auto &cell : dof_handler.active_cell_iterators())
@@ -452,10 +510,12 @@ namespace Friction
     void
     Estimator<dim>::add(const CellIterator &cell,
                         const double        value,
+                        const double        certain_part,
                         double             &share)
     {
       squared_errors(cell->active_cell_index()) += value;
       share += value;
+      certain += certain_part * value;
     }
 
 
@@ -553,11 +613,15 @@ namespace Friction
             (2. * mu * (strain * strain) + lambda * theta * theta) * JxW;
         }
 
+      const double of_material = certain_part_of_material(material);
+      const double of_shape =
+        certain_part_of_side(values.width(), cell->diameter(), dim);
       add(cell,
           cell->diameter() * cell->diameter() * squared_residual / (2. * mu),
+          of_material * of_shape * of_shape,
           estimate.interior);
       if (!is_pointwise)
-        add(cell, 2. * mu * squared_difference, estimate.interior);
+        add(cell, 2. * mu * squared_difference, of_material, estimate.interior);
     }
 
 
@@ -680,12 +744,17 @@ namespace Friction
             face_quadrature.weight(q);
         }
 
-      const double mu = std::max(material.mu(), other_material.mu());
-      const double share =
-        0.5 * cell->face(f)->diameter() * squared_jump / (2. * mu);
+      const double mu       = std::max(material.mu(), other_material.mu());
+      const double diameter = cell->face(f)->diameter();
+      const double share    = 0.5 * diameter * squared_jump / (2. * mu);
+      const double certain_part =
+        std::min(certain_part_of_material(material),
+                 certain_part_of_material(other_material)) *
+        certain_part_of_side(
+          std::min(values.width(), neighbor_values.width()), diameter, dim - 1);
       for (const CellIterator &side : {cell, neighbor})
         if (side->is_locally_owned())
-          add(side, share, estimate.jumps);
+          add(side, share, certain_part, estimate.jumps);
     }
 
 
@@ -755,8 +824,11 @@ namespace Friction
               residual[c] = 0.;
           squared_residual += residual.norm_square() * JxW[q];
         }
+      const double diameter = cell->face(f)->diameter();
       add(cell,
-          cell->face(f)->diameter() * squared_residual / (2. * material.mu()),
+          diameter * squared_residual / (2. * material.mu()),
+          certain_part_of_material(material) *
+            certain_part_of_side(values.width(), diameter, dim - 1),
           on_contact_boundary ? estimate.contact : estimate.tractions);
 
       if (on_contact_boundary && contact.normal != nullptr &&
@@ -827,7 +899,7 @@ namespace Friction
                   std::max(0., F * p * s.norm() + t * s)) *
             JxW[q];
         }
-      add(cell, sum, estimate.complementarity);
+      add(cell, sum, 1., estimate.complementarity);
     }
   } // namespace
 

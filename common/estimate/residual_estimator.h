@@ -94,6 +94,19 @@ namespace Friction
     /// $\left(\sum_K\eta_K^2\right)^{1/2}$ over all processes.
     double total = 0.;
 
+    /**
+     * What the error is at least, as far as the mesh can tell: what remains of
+     * the sum if each residual is divided by the most that it can be for an
+     * error of one. That is smaller where $\lambda$ is large, by
+     * $2\mu/(\lambda+2\mu)$ in the square, and where cells are flat, by the
+     * ratio of the width of the cell to the length of the side on which the
+     * residual is, and the square of that for what is inside of the cell (G.
+     * Kunert, Numer. Math. 86, 2000). The whole is divided by 6, or in three
+     * dimensions by 8, which is what is measured for squares and cubes (see the
+     * tests).
+     */
+    double lower_bound = 0.;
+
     /// $\sqrt{a(u_h,u_h)}$, to measure @p total against.
     double energy_norm = 0.;
 

@@ -11,8 +11,8 @@ namespace Friction
   /**
    * Solves the truncated linear problem $T(A+\omega'')T\,v=r$ on the leaf mesh
    * as it stands, by AlgebraicSolver: the counterpart of TruncatedCorrection
-   * for meshes or materials whose coarse levels are of no help, such as cells that
-   * are short in two of three directions.
+   * for meshes or materials whose coarse levels are of no help, such as cells
+   * that are short in two of three directions.
    *
    * With it a step of the iteration becomes one of Newton's method, between two
    * relaxations that keep it admissible and descending. It costs a

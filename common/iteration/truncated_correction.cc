@@ -3,6 +3,18 @@
 
 namespace Friction
 {
+  namespace
+  {
+    // When a level is visited twice in a V-cycle: from a share of nodes in
+    // lines on the next finer level, and from a ratio of unknowns on; and on
+    // how many levels at most, since that many times double the visits of the
+    // coarsest.
+    constexpr double       mostly_lines = .5;
+    constexpr unsigned int coarsening = 3, most_doubled = 4;
+  } // namespace
+
+
+
   template <int dim>
   TruncatedCorrection<dim>::TruncatedCorrection(
     Levels<dim>       &levels,
@@ -11,19 +23,23 @@ namespace Friction
     const bool         by_lines)
     : levels(levels)
     , relaxes_leaf(by_lines && levels.hierarchy().n_levels() > 1 &&
-                   levels.has_lines(levels.n_correction_levels()))
+                   levels.share_in_lines(levels.n_correction_levels()) > 0)
     , smoothing_steps(smoothing_steps)
   {
     const unsigned int n = levels.n_correction_levels();
-    for (unsigned int k = 0; k < n; ++k)
-      {
-        const bool is_worth_more = by_lines && levels.has_lines(k + 1) &&
-          3 * levels.n_dofs(k) <= levels.n_dofs(k + 1);
-        // The coarsest level is solved, so that once is enough.
-        n_visits.push_back(k > 0 && (cycle == Cycle::W || is_worth_more) ? 2
-                                                                         : 1);
-        is_v_cycle = is_v_cycle && n_visits[k] == 1;
-      }
+    // The coarsest level is solved, so that once is enough.
+    n_visits.assign(n, 1);
+    unsigned int n_doubled = 0;
+    for (unsigned int k = n; k-- > 1;)
+      if (cycle == Cycle::W)
+        n_visits[k] = 2;
+      else if (by_lines && levels.share_in_lines(k + 1) >= mostly_lines &&
+               coarsening * levels.n_dofs(k) <= levels.n_dofs(k + 1) &&
+               n_doubled < most_doubled)
+        {
+          n_visits[k] = 2;
+          ++n_doubled;
+        }
     for (unsigned int k = 0; k < n; ++k)
       {
         rhs.push_back(levels.vector(k));
@@ -69,6 +85,7 @@ namespace Friction
       }
     for (VectorType &c : correction)
       c = 0.;
+    is_untouched.assign(correction.size(), true);
     restrict_residual(top);
     for (unsigned int i = 0; i < n_visits[top]; ++i)
       visit(top);
@@ -95,6 +112,7 @@ namespace Friction
   void
   TruncatedCorrection<dim>::visit(const unsigned int k)
   {
+    is_untouched[k] = false;
     if (k == 0)
       {
         solve_coarsest();
@@ -106,7 +124,7 @@ namespace Friction
     VectorType               &coarse   = correction[k - 1];
     VectorType               &before   = start[k];
     before                             = coarse;
-    if (is_v_cycle)
+    if (is_untouched[k - 1])
       relax(k, false, &defect[k]);
     else
       {
@@ -182,6 +200,7 @@ namespace Friction
   TruncatedCorrection<dim>::memory_consumption() const
   {
     std::size_t bytes = levels.memory_consumption();
+    bytes += leaf_defect.memory_consumption() + leaf_start.memory_consumption();
     for (const auto &vectors : {&rhs, &correction, &start, &defect, &work})
       for (const VectorType &vector : *vectors)
         bytes += vector.memory_consumption();

@@ -31,8 +31,8 @@ namespace Friction
    * relaxed together, see LineRelaxation, and so they are on the leaf mesh,
    * before and after everything else, with half as many sweeps. Coarse
    * levels are worth more then: a level that has at most a third of the nodes
-   * of the next finer one, and on that one lines, is visited twice also in a
-   * V-cycle.
+   * of the next finer one, of which half or more are in lines, is visited twice
+   * also in a V-cycle, on four levels at most.
    */
   template <int dim>
   class TruncatedCorrection : public Correction<dim>
@@ -83,9 +83,10 @@ namespace Friction
     const VectorType *leaf_residual = nullptr;
     VectorType        leaf_defect, leaf_start;
 
-    // How often a level is visited per visit of the next finer one.
+    // How often a level is visited per visit of the next finer one, and whether
+    // it has not been visited yet in this cycle.
     std::vector<unsigned int> n_visits;
-    bool                      is_v_cycle = true;
+    std::vector<char>         is_untouched;
 
     const bool relaxes_leaf;
 

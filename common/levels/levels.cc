@@ -1,5 +1,7 @@
 #include <common/levels/levels.h>
 
+#include <utility>
+
 namespace Friction
 {
   namespace
@@ -42,21 +44,29 @@ namespace Friction
     , level_matrices(
         problem.stiffness.blocks(), level_hierarchy, problem.constraints)
     , coarsest(level_hierarchy, level_matrices, coarsest_method)
-    , leaf_lines(problem.stiffness.blocks(),
-                 movable_nodes(problem.constraints),
-                 problem.communicator())
-    , have_lines(leaf_lines.has_lines())
+    , leaf_lines(
+        problem.stiffness.blocks(),
+        movable_nodes(problem.constraints),
+        [&problem](const unsigned int node, const unsigned int c) {
+          return problem.constraints.is_prescribed(node, c);
+        },
+        problem.communicator())
+    , factorised(level_matrices.n_levels() + 1, 0)
   {
     for (unsigned int k = 0; k < n_correction_levels(); ++k)
       {
         const auto &level = level_hierarchy.level(k);
-        relaxations.emplace_back(level_matrices.matrix(k),
-                                 level_matrices.inverse_diagonals(k),
-                                 level.relaxed_nodes());
-        lines.emplace_back(level_matrices.matrix(k),
-                           level.relaxed_nodes(),
-                           problem.communicator());
-        have_lines = have_lines || lines.back().has_lines();
+        lines.emplace_back(
+          level_matrices.matrix(k),
+          level.relaxed_nodes(),
+          [&level](const unsigned int node, const unsigned int c) {
+            return level.is_prescribed(node, c);
+          },
+          problem.communicator());
+        relaxations.emplace_back(
+          level_matrices.matrix(k),
+          level_matrices.inverse_diagonals(k),
+          lines.back().other_nodes(level.relaxed_nodes()));
         coupled.emplace_back(level.numbering(), level.coupled_ghosts());
       }
   }
@@ -69,16 +79,19 @@ namespace Friction
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
     const std::size_t n_rows = level_matrices.update(truncation);
-    // Nothing has to be known of other processes for this: their rows have no
-    // part in the lines of this one.
-    if (have_lines && (n_rows > 0 || !lines_are_factorised))
-      {
-        for (LineRelaxation<dim> &of_level : lines)
-          of_level.factorise();
-        leaf_lines.factorise(&level_matrices.current_truncation());
-        lines_are_factorised = true;
-      }
+    // Rows of other processes have no part in the lines of this one.
+    if (n_rows > 0)
+      ++version;
     return n_rows;
+  }
+
+
+
+  template <int dim>
+  bool
+  Levels<dim>::needs_factorisation(const unsigned int k)
+  {
+    return std::exchange(factorised[k], version) != version;
   }
 
 
@@ -92,11 +105,17 @@ namespace Friction
                      VectorType        *defect)
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::coarse_sweeps);
-    double *const    result = defect != nullptr ? defect->begin() : nullptr;
-    if (lines[k].has_lines())
+    double *const    result    = defect != nullptr ? defect->begin() : nullptr;
+    const bool       has_lines = lines[k].has_lines();
+    if (has_lines && needs_factorisation(k))
+      lines[k].factorise();
+    if (has_lines && sweeps.backwards)
+      lines[k].run(sweeps, b.begin(), c.begin(), coupled[k]);
+    const bool is_last = !has_lines || sweeps.backwards;
+    relaxations[k].run(
+      sweeps, b.begin(), c.begin(), coupled[k], is_last ? result : nullptr);
+    if (!is_last)
       lines[k].run(sweeps, b.begin(), c.begin(), coupled[k], result);
-    else
-      relaxations[k].run(sweeps, b.begin(), c.begin(), coupled[k], result);
   }
 
 
@@ -109,6 +128,8 @@ namespace Friction
                           VectorType       *defect)
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::coarse_sweeps);
+    if (needs_factorisation(n_correction_levels()))
+      leaf_lines.factorise(&level_matrices.current_truncation());
     problem.stiffness.update_ghosts(v);
     leaf_lines.run(sweeps,
                    r.begin(),

@@ -103,8 +103,9 @@ namespace Friction
 
     /**
      * Gauss-Seidel sweeps for B_k c = b at the nodes of a level that are to be
-     * relaxed, by nodes or, where cells are stretched, by lines. The ghosts of
-     * @p c must be valid, and are on return.
+     * relaxed: first at those that belong to no line, then over the lines, if
+     * there are any; backwards the other way round. The ghosts of @p c must be
+     * valid, and are on return.
      * @param defect  if not null, b - B_k c on return.
      */
     void relax(const unsigned int k,
@@ -113,16 +114,16 @@ namespace Friction
                const Sweeps      &sweeps,
                VectorType        *defect = nullptr);
 
-    /** Whether cells of a correction level, or with n_correction_levels() in
-     * place of a level those of the leaf mesh, are stretched so much that there
-     * are lines of strongly coupled nodes. relax() then relaxes lines; on the
-     * leaf mesh, where the leading relaxation goes node by node, a correction
-     * has to. */
-    bool
-    has_lines(const unsigned int k) const
+    /** The share of nodes in lines of strong couplings, which are there where
+     * cells are stretched, on a correction level, or with n_correction_levels()
+     * in place of a level on the leaf mesh. relax() knows of the lines of its
+     * level; on the leaf mesh, where the leading relaxation goes node by node,
+     * a correction has to. */
+    double
+    share_in_lines(const unsigned int k) const
     {
-      return k < n_correction_levels() ? lines[k].has_lines()
-                                       : leaf_lines.has_lines();
+      return k < n_correction_levels() ? lines[k].share_of_nodes()
+                                       : leaf_lines.share_of_nodes();
     }
 
     /** The number of unknowns of a correction level, or likewise of the leaf
@@ -163,11 +164,15 @@ namespace Friction
     CoarsestSolver<dim>           coarsest;
     std::vector<GaussSeidel<dim>> relaxations;
 
-    // Where cells are stretched.
+    // Where cells are stretched: the lines of the levels and of the leaf mesh.
+    // They are factorised when they are needed, and then kept until rows of the
+    // level matrices change.
     std::vector<LineRelaxation<dim>> lines;
     LineRelaxation<dim>              leaf_lines;
-    bool                             have_lines           = false;
-    bool                             lines_are_factorised = false;
+    unsigned int                     version = 1; // of the matrices
+    std::vector<unsigned int>        factorised;  // which; none if zero
+
+    bool needs_factorisation(const unsigned int k);
 
     std::vector<GhostExchange> coupled;
   };

@@ -1,7 +1,7 @@
 #include <common/nodes/interface_damping.h>
 #include <common/nodes/line_relaxation.h>
+#include <common/parallel/reductions.h>
 
-#include <deal.II/base/mpi.h>
 #include <deal.II/base/types.h>
 
 #include <algorithm>
@@ -21,9 +21,11 @@ namespace Friction
 
     constexpr unsigned int shortest_line = 3;
 
-    // One node in so many has to be in a line, or there are none. To see that
-    // there are none it is enough to look at every seventh node.
-    constexpr unsigned int fewest = 50, sample = 7;
+    // The share of nodes that has to be in lines, or there are none. To see
+    // that there are none it is enough to look at every seventh node where
+    // there are many.
+    constexpr double       fewest = .02;
+    constexpr unsigned int sample = 7, many = 10000;
 
     // The strong partners of a node, at most two; the others are none.
     using Partners = std::array<unsigned int, 2>;
@@ -58,22 +60,25 @@ namespace Friction
 
 
 
-    // See interface_damping(). The matrix of a line has eigenvalues that are
-    // much smaller than those of its diagonal blocks, so that nothing of these
-    // can be set off against the couplings to other processes: the damping is
-    // half of the majorant.
+    // Whether a line that has got the nodes before `last` and `last` itself
+    // stays block tridiagonal with one more: the node must couple to none of
+    // them but the last.
     template <int dim>
-    NodeBlock<dim>
-    damping_of(const NodeBlockMatrix<dim> &A,
-               const unsigned int          row,
-               const bool                  is_alone)
+    bool
+    may_follow(const NodeBlockMatrix<dim>      &A,
+               const unsigned int               node,
+               const unsigned int               last,
+               const std::vector<unsigned int> &line_of_node,
+               const unsigned int               line)
     {
-      if (is_alone)
-        return interface_damping(A, row);
-      NodeBlock<dim> damping = interface_majorant(A, row);
-      for (double &entry : damping)
-        entry *= .5;
-      return damping;
+      for (std::size_t k = A.row_begin(node) + 1; k < A.row_end(node); ++k)
+        {
+          const unsigned int other = A.column(k);
+          if (other < A.n_rows() && other != last &&
+              line_of_node[other] == line)
+            return false;
+        }
+      return true;
     }
   } // namespace
 
@@ -82,37 +87,54 @@ namespace Friction
   template <int dim>
   LineRelaxation<dim>::LineRelaxation(const NodeBlockMatrix<dim> &A,
                                       const NodeRanges           &relaxed_nodes,
+                                      const IsHeld               &is_held,
                                       const MPI_Comm              communicator)
     : A(&A)
   {
     std::vector<char> is_relaxed(A.n_rows());
+    double            n_relaxed = 0;
     for (const RowRange &range : relaxed_nodes)
-      std::fill(is_relaxed.begin() + range.first,
-                is_relaxed.begin() + range.second,
-                true);
+      {
+        std::fill(is_relaxed.begin() + range.first,
+                  is_relaxed.begin() + range.second,
+                  true);
+        n_relaxed += range.second - range.first;
+      }
 
-    types::global_dof_index n_sampled = 0, n_stretched = 0;
+    // Where cells are not stretched, this is all that is paid.
+    const unsigned int    step    = A.n_rows() > many ? sample : 1;
+    std::array<double, 2> sampled = {{0, 0}}; // all, and stretched ones
     for (const RowRange &range : relaxed_nodes)
       for (unsigned int i = range.first; i < range.second; ++i)
-        if (i % sample == 0)
+        if (i % step == 0)
           {
-            ++n_sampled;
             const Partners partners = strong_partners(A, i, is_relaxed);
-            n_stretched += partners[0] != none || partners[1] != none;
+            sampled[0] += 1;
+            sampled[1] += partners[0] != none || partners[1] != none;
           }
-    starts = {0};
-    if (fewest * Utilities::MPI::sum(n_stretched, communicator) <=
-        Utilities::MPI::sum(n_sampled, communicator))
+    sampled = sum_over_processes(sampled, communicator);
+    if (sampled[1] <= fewest * sampled[0])
       return;
-    find_lines(is_relaxed, communicator);
-    if (!worthwhile)
+
+    find_lines(is_relaxed);
+    const std::array<double, 2> found = sum_over_processes(
+      std::array<double, 2>{{n_relaxed, double(nodes.size())}}, communicator);
+    if (found[1] <= fewest * found[0])
       {
         starts = {0};
         nodes  = {};
         return;
       }
+    share = found[1] / found[0];
     for (const unsigned int i : nodes)
-      cuts.push_back(1e-10 * trace<dim>(A.block(A.row_begin(i))));
+      {
+        cuts.push_back(1e-10 * trace<dim>(A.block(A.row_begin(i))));
+        unsigned char components = 0;
+        for (unsigned int c = 0; c < dim; ++c)
+          if (!is_held(i, c))
+            components |= 1u << c;
+        free_components.push_back(components);
+      }
     inverse_pivots.resize(nodes.size());
     couplings.resize(nodes.size());
   }
@@ -121,72 +143,63 @@ namespace Friction
 
   template <int dim>
   void
-  LineRelaxation<dim>::find_lines(const std::vector<char> &is_relaxed,
-                                  const MPI_Comm           communicator)
+  LineRelaxation<dim>::find_lines(const std::vector<char> &is_relaxed)
   {
     const unsigned int    n = A->n_rows();
     std::vector<Partners> partners(n, Partners{{none, none}});
     for (unsigned int i = 0; i < n; ++i)
       if (is_relaxed[i])
         partners[i] = strong_partners(*A, i, is_relaxed);
-    // Whoever is asked, the answer is the same: so decide first and change
-    // afterwards.
+    // In whatever order nodes are asked, the answer is the same: so decide
+    // first and change afterwards.
     std::vector<Partners> mutual = partners;
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int &j : mutual[i])
         if (j != none && partners[j][0] != i && partners[j][1] != i)
           j = none;
 
-    // A line by its first and last index in a list of nodes. First those that
-    // have ends, from the end with the lower number; then rings, cut at their
-    // lowest node.
-    std::vector<char>         is_taken(n);
-    std::vector<unsigned int> found;
+    // First the chains that have ends, from the end with the lower number; then
+    // rings, from their lowest node.
+    std::vector<unsigned int> line_of_node(n, none), found;
     std::vector<RowRange>     ranges;
     const auto                walk = [&](const unsigned int first) {
-      const unsigned int begin = found.size();
+      unsigned int begin = found.size(), last = none;
       for (unsigned int i = first, next = none; i != none; i = next)
         {
-          is_taken[i] = true;
+          if (last != none &&
+              !may_follow(*A, i, last, line_of_node, ranges.size()))
+            {
+              ranges.emplace_back(begin, found.size());
+              begin = found.size();
+            }
+          line_of_node[i] = ranges.size();
           found.push_back(i);
+          last = i;
           next = none;
           for (const unsigned int j : mutual[i])
-            if (j != none && !is_taken[j])
+            if (j != none && line_of_node[j] == none)
               next = j;
         }
       ranges.emplace_back(begin, found.size());
     };
     for (const bool with_ends : {true, false})
       for (unsigned int i = 0; i < n; ++i)
-        if (is_relaxed[i] && !is_taken[i] &&
+        if (is_relaxed[i] && line_of_node[i] == none &&
             (!with_ends || mutual[i][0] == none || mutual[i][1] == none))
           walk(i);
 
-    // By their first nodes, so that a sweep goes through the matrix in order;
-    // what is too short falls to pieces.
-    types::global_dof_index n_in_lines = 0, n_relaxed = found.size();
-    std::vector<RowRange>   pieces;
+    // By their first nodes, so that a sweep goes through the matrix in order.
+    std::sort(ranges.begin(), ranges.end(), [&](const auto &a, const auto &b) {
+      return found[a.first] < found[b.first];
+    });
     for (const RowRange &range : ranges)
       if (range.second - range.first >= shortest_line)
         {
-          n_in_lines += range.second - range.first;
-          pieces.push_back(range);
+          nodes.insert(nodes.end(),
+                       found.begin() + range.first,
+                       found.begin() + range.second);
+          starts.push_back(nodes.size());
         }
-      else
-        for (unsigned int k = range.first; k < range.second; ++k)
-          pieces.emplace_back(k, k + 1);
-    std::sort(pieces.begin(), pieces.end(), [&](const auto &a, const auto &b) {
-      return found[a.first] < found[b.first];
-    });
-    for (const RowRange &piece : pieces)
-      {
-        nodes.insert(nodes.end(),
-                     found.begin() + piece.first,
-                     found.begin() + piece.second);
-        starts.push_back(nodes.size());
-      }
-    worthwhile = fewest * Utilities::MPI::sum(n_in_lines, communicator) >
-      Utilities::MPI::sum(n_relaxed, communicator);
   }
 
 
@@ -197,10 +210,28 @@ namespace Friction
   {
     std::vector<std::vector<unsigned int>> result;
     for (unsigned int l = 0; l + 1 < starts.size(); ++l)
-      if (starts[l + 1] > starts[l] + 1)
-        result.emplace_back(nodes.begin() + starts[l],
-                            nodes.begin() + starts[l + 1]);
+      result.emplace_back(nodes.begin() + starts[l],
+                          nodes.begin() + starts[l + 1]);
     return result;
+  }
+
+
+
+  template <int dim>
+  NodeRanges
+  LineRelaxation<dim>::other_nodes(const NodeRanges &all) const
+  {
+    if (!has_lines())
+      return all;
+    std::vector<char> is_in_line(A->n_rows());
+    for (const unsigned int i : nodes)
+      is_in_line[i] = true;
+    NodeRanges others;
+    for (const RowRange &range : all)
+      for (unsigned int i = range.first; i < range.second; ++i)
+        if (!is_in_line[i])
+          append(others, i);
+    return others;
   }
 
 
@@ -221,15 +252,19 @@ namespace Friction
     for (unsigned int l = 0; l + 1 < starts.size(); ++l)
       for (unsigned int k = starts[l]; k < starts[l + 1]; ++k)
         {
-          const bool           is_alone = starts[l] + 1 == starts[l + 1];
-          const unsigned int   i        = nodes[k];
-          NodeBlock<dim>       pivot    = block(i, A->row_begin(i));
-          const NodeBlock<dim> damping  = damping_of(*A, i, is_alone);
+          const unsigned int i     = nodes[k];
+          NodeBlock<dim>     pivot = block(i, A->row_begin(i));
+          // See interface_damping(). The matrix of a line has eigenvalues that
+          // are much smaller than those of its diagonal blocks, so that nothing
+          // of these can be set off against the couplings to other processes:
+          // the damping is half of the majorant.
+          const NodeBlock<dim> majorant  = interface_majorant(*A, i);
+          const bool           is_damped = majorant != zero_block<dim>();
           for (unsigned int e = 0; e < dim * dim; ++e)
-            pivot[e] += damping[e];
+            pivot[e] += .5 * majorant[e];
           if (truncation != nullptr && !truncation->is_identity(i))
             {
-              if (damping != zero_block<dim>())
+              if (is_damped)
                 pivot = truncation->truncated_block(i, pivot.data(), i);
               for (unsigned int e = 0; e < dim * dim; ++e)
                 pivot[e] += truncation->curvature(i)[e];
@@ -247,8 +282,18 @@ namespace Friction
               for (unsigned int e = 0; e < dim * dim; ++e)
                 pivot[e] -= taken[e];
             }
+          // What is held has no row in the inverse, and so no change, neither
+          // its own nor one that it would cause.
+          const auto is_free = [&](const unsigned int c) {
+            return (free_components[k] >> c) & 1;
+          };
+          for (unsigned int c = 0; c < dim; ++c)
+            for (unsigned int r = 0; r < dim; ++r)
+              if (!is_free(c) || !is_free(r))
+                pivot[c * dim + r] = 0.;
           inverse_pivots[k] = pseudo_inverse<dim>(pivot, cuts[k]);
         }
+    is_factorised = true;
   }
 
 
@@ -325,6 +370,7 @@ namespace Friction
                            GhostExchange &ghosts,
                            double        *residual) const
   {
+    Assert(is_factorised || !has_lines(), ExcInvalidState());
     const unsigned int n = starts.size() - 1;
     for (unsigned int s = 0; s < sweeps.number; ++s)
       {
@@ -347,7 +393,7 @@ namespace Friction
   LineRelaxation<dim>::memory_consumption() const
   {
     return (starts.capacity() + nodes.capacity()) * sizeof(unsigned int) +
-      cuts.capacity() * sizeof(double) +
+      free_components.capacity() + cuts.capacity() * sizeof(double) +
       (inverse_pivots.capacity() + couplings.capacity()) *
       sizeof(NodeBlock<dim>);
   }

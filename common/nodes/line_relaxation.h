@@ -8,57 +8,79 @@
 
 #include <mpi.h>
 
+#include <functional>
 #include <vector>
 
 namespace Friction
 {
   /**
-   * Block Gauss-Seidel whose blocks are lines of strongly coupled nodes.
+   * Gauss-Seidel for lines of strongly coupled nodes, each of them a block.
    *
    * Where cells are much longer than wide, a node is coupled to its neighbours
    * in the short direction many times more than to all others. Relaxing one
    * node after the other then changes next to nothing: what a node would like
-   * to do its neighbours forbid. Relaxing them together is as cheap, since the
-   * problem of a line is block tridiagonal, and what is left after it is smooth
-   * in the short direction, so that a coarser mesh can go on.
+   * to do its neighbours forbid. Relaxing them together takes hardly more
+   * operations, since the problem of a line is block tridiagonal, and what is
+   * left after it is smooth in the short direction, so that a coarser mesh can
+   * go on. Nodes that belong to no line are left alone; they are relaxed one by
+   * one, by the caller.
    *
    * Lines are found from the matrix. With the negative traces of blocks as
-   * strengths, which are the weights of Laplace's operator for a material that
-   * is the same everywhere, a node may be in a line if its two strongest
-   * couplings have four fifths of its diagonal together. With squares they have
-   * a quarter, with rectangles 4/5 from an aspect ratio of 2.6 on, and all of
-   * it if cells are infinitely long. Lines connect nodes of which each is one
-   * of the two strongest partners of the other, and those of less than three
-   * nodes are dropped.
+   * strengths, which for a material that is the same everywhere are those of
+   * Laplace's operator, if each component is weighted alike, a node may be in a
+   * line if its two strongest couplings have four fifths of its diagonal
+   * together. With squares they have a quarter, with rectangles 4/5 from an
+   * aspect ratio of 2.6 on (with cuboids short in one direction, from 3.6 on),
+   * and all of it if cells are infinitely long. Lines connect nodes of which
+   * each is one of the two strongest partners of the other. Inside of a line no
+   * node couples to others than the one before and the one after: where it
+   * would, in a bend or a ring, the line is cut. Those of less than three nodes
+   * are dropped.
    *
    * With several processes, lines end at the interfaces, and their nodes there
-   * get half of interface_majorant() as damping, with which the energy falls.
-   * An interface that cuts lines costs cycles, many if it cuts all of them.
+   * get half of interface_majorant() as damping, with which the energy falls;
+   * see doc/parallel.md. An interface that cuts lines costs cycles, many if it
+   * cuts all of them.
    */
   template <int dim>
   class LineRelaxation
   {
   public:
+    /** Whether a component of a node has to keep its value. */
+    using IsHeld = std::function<bool(const unsigned int node,
+                                      const unsigned int component)>;
+
     /**
      * Finds the lines. Collective.
      * @param A             kept by reference.
      * @param nodes         those to be relaxed.
+     * @param is_held       components that keep their values; kept.
      * @param communicator  of all processes that have rows of the matrix.
      */
     LineRelaxation(const NodeBlockMatrix<dim> &A,
                    const NodeRanges           &nodes,
+                   const IsHeld               &is_held,
                    const MPI_Comm              communicator);
 
-    /** Whether more than one in fifty nodes is in a line, over all processes.
-     * If not, relaxation by nodes is what one wants. */
+    /** The share of the nodes to be relaxed that are in lines, over all
+     * processes. If there are very few, none are. */
+    double
+    share_of_nodes() const
+    {
+      return share;
+    }
+
     bool
     has_lines() const
     {
-      return worthwhile;
+      return share > 0;
     }
 
     /** The lines, each from an end to the other. */
     std::vector<std::vector<unsigned int>> lines() const;
+
+    /** Those of @p all that are in no line. */
+    NodeRanges other_nodes(const NodeRanges &all) const;
 
     /**
      * Factorises the problems of the lines. To be called before the first sweep
@@ -68,8 +90,8 @@ namespace Friction
     void factorise(const Truncation<dim> *truncation = nullptr);
 
     /**
-     * Sweeps over lines and the nodes in between, and then, if @p residual is
-     * not null, the (truncated) residual of all rows.
+     * Sweeps over the lines, and then, if @p residual is not null, the
+     * (truncated) residual of all rows.
      * @param b       one value per component of each owned node; truncated.
      * @param x       the same and the ghosts, which must be valid, and are on
      *                return; truncated.
@@ -84,23 +106,25 @@ namespace Friction
 
   private:
     const NodeBlockMatrix<dim> *A;
-    bool                        worthwhile = false;
+    double                      share = 0.;
 
     // Line l has the nodes with indices starts[l],...,starts[l+1]-1 in @p
-    // nodes; a node that is in none is a line by itself.
-    std::vector<unsigned int> starts, nodes;
+    // nodes.
+    std::vector<unsigned int> starts = {0}, nodes;
 
-    // By the same index: eigenvalues of pivots that count as zero; pseudo
-    // inverses of the pivots; coupling to the node before.
+    // By the same index: which components are free, as bits; eigenvalues of
+    // pivots that count as zero; pseudo-inverses of the pivots; coupling to the
+    // node before.
+    std::vector<unsigned char>  free_components;
     std::vector<double>         cuts;
     std::vector<NodeBlock<dim>> inverse_pivots, couplings;
 
-    const Truncation<dim> *truncation = nullptr;
+    const Truncation<dim> *truncation    = nullptr;
+    bool                   is_factorised = false;
 
     mutable std::vector<NodeValue<dim>> values;
 
-    void find_lines(const std::vector<char> &is_relaxed,
-                    const MPI_Comm           communicator);
+    void find_lines(const std::vector<char> &is_relaxed);
 
     NodeValue<dim> residual_of(const unsigned int node,
                                const double      *b,

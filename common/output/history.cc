@@ -112,6 +112,10 @@ namespace Friction
              "estimated error of the displacement in the energy norm",
              Q::energy_norm,
              &R::estimated_error);
+      column("least_error",
+             "what that error is at least, as far as the mesh can tell",
+             Q::energy_norm,
+             &R::least_error);
       column("certificate",
              "largest violation of the discrete law, of the peak pressure",
              Q::number,

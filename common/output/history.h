@@ -87,8 +87,10 @@ namespace Friction
     double contact_resolution  = 0.;
     double stick_resolution    = 0.;
 
-    /// Estimated error in the energy norm.
+    /// Estimated error in the energy norm, and what it is at least: see
+    /// ErrorEstimate.
     double estimated_error = 0.;
+    double least_error     = 0.;
 
     /// Largest scaled residual of the discrete contact and friction laws.
     double certificate = 0.;
@@ -111,7 +113,8 @@ namespace Friction
       archive &max_pressure_error               &contact_half_width_error;
       archive &stick_half_width_error           &pressure_resolution;
       archive &contact_resolution               &stick_resolution;
-      archive &estimated_error &certificate &setup_seconds &solve_seconds;
+      archive &estimated_error &least_error     &certificate;
+      archive &setup_seconds                    &solve_seconds;
     }
   };
 

@@ -26,7 +26,7 @@ namespace Friction
       const std::string manifest_name = "manifest";
 
       // The first line. To be changed whenever the lines below change.
-      const std::string manifest_format = "checkpoint, format 1";
+      const std::string manifest_format = "checkpoint, format 2";
 
       // Ours have a few hundred bytes.
       constexpr std::uintmax_t longest_manifest = 1 << 16;

@@ -8,7 +8,8 @@
 // (Z^T C Z)(Z^T A Z) lie in [0,1]. Zero occurs, since the finest functions are
 // left to the relaxation of the leaf mesh. Together with one such sweep before
 // and one after, all eigenvalues are positive, and the smallest one bounds the
-// contraction from below.
+// contraction from below. All of this holds on stretched cells, too, where
+// lines are relaxed on levels and leaf mesh.
 //
 // With two levels only, the cycle is but the direct solution on the coarser
 // one. Then it is a projection, whose eigenvalues are zero and one and nothing
@@ -190,14 +191,36 @@ namespace
 
 
 
+  // Cells that are ten times as long as wide, and on the left a roller, so that
+  // the lines there have components that are prescribed.
+  template <int dim>
+  Parameters
+  stretched_parameters()
+  {
+    Parameters p            = block_parameters<dim>(FrictionLaw::coulomb, .4);
+    p.scene.size            = std::vector<double>(dim, 1.);
+    p.scene.distortion      = 0.;
+    p.scene.subdivisions    = std::vector<unsigned int>(dim, 1);
+    p.scene.size[dim - 1]   = .2;
+    p.scene.subdivisions[0] = (dim == 2 ? 3 : 1);
+    p.scene.subdivisions[dim - 1] = (dim == 2 ? 6 : 4);
+    std::vector<std::string> roller(dim, "free");
+    roller[0] = "0";
+    p.boundary_conditions.displacement.push_back({"0", roller});
+    return p;
+  }
+
+
+
   template <int dim>
   void
-  test_linear(const unsigned int seed)
+  test_linear(const unsigned int seed, const bool is_stretched)
   {
     Random                   random(seed);
     const RandomProblem<dim> problem(
-      block_parameters<dim>(FrictionLaw::coulomb, .4),
-      dim == 2 ? 4 : 2,
+      is_stretched ? stretched_parameters<dim>()
+                   : block_parameters<dim>(FrictionLaw::coulomb, .4),
+      dim == 2 ? (is_stretched ? 3 : 4) : 2,
       dim == 2 ? .45 : .5,
       random);
     for (const std::string kind :
@@ -206,7 +229,8 @@ namespace
         const Truncation<dim> truncation =
           make_truncation<dim>(problem, kind, random);
         const Setup<dim> setup(problem, truncation);
-        std::cout << dim << "D, truncation: " << kind << "; "
+        std::cout << dim << "D, " << (is_stretched ? "stretched, " : "")
+                  << "truncation: " << kind << "; "
                   << problem.constraints().n_nodes() << " nodes, "
                   << problem.hierarchy().n_levels() << " levels, "
                   << problem.n_hanging_with_truncated_master(truncation)
@@ -239,6 +263,18 @@ namespace
             TestLevels<dim>          levels(problem);
             TruncatedCorrection<dim> cycle(levels, type, 1);
             levels.update(truncation);
+            if (type == Cycle::V)
+              {
+                bool               has_lines = true, leaf_has = false;
+                const unsigned int n = levels.n_correction_levels();
+                for (unsigned int k = 1; k < n; ++k)
+                  has_lines = has_lines && levels.share_in_lines(k) > 0;
+                leaf_has = levels.share_in_lines(n) > 0;
+                check(n > 1 && has_lines == is_stretched &&
+                        leaf_has == is_stretched,
+                      is_stretched ? "levels and leaf mesh have lines"
+                                   : "there are no lines");
+              }
             const Eigen::MatrixXd C =
               to_dense_operator(cycle, problem, setup.Z);
             const std::string which = std::string(name(type)) + "-cycle: ";
@@ -257,7 +293,8 @@ namespace
                   which + "spectrum in [0,1]");
             const unsigned int n_coarse =
               (spectrum.eigenvalues().array() > 1e-8).count();
-            check(n_coarse > 0 && n_coarse < C.rows(),
+            // Lines of the leaf mesh are relaxed as well.
+            check(n_coarse > 0 && (n_coarse < C.rows() || is_stretched),
                   which + "acts on the coarse functions");
 
             // Error propagation of: sweep, cycle, sweep backwards.
@@ -272,7 +309,7 @@ namespace
             check(contraction.eigenvalues().minCoeff() > -1e-10,
                   which + "with leaf sweeps, error not overshot");
             check_below(contraction.eigenvalues().maxCoeff(),
-                        .8,
+                        is_stretched ? .93 : .8,
                         which + "contraction with one leaf sweep each way");
             if (type == Cycle::V)
               contraction_of_V = contraction.eigenvalues().maxCoeff();
@@ -296,10 +333,10 @@ namespace
       block_parameters<dim>(FrictionLaw::coulomb, .4), 1, .6, random);
     const Truncation<dim> truncation =
       make_truncation<dim>(problem, "random at contact", random);
-    const Setup<dim> setup(problem, truncation);
+    const Setup<dim>         setup(problem, truncation);
     TestLevels<dim>          levels(problem);
-            TruncatedCorrection<dim> cycle(levels, Cycle::V, 1);
-            levels.update(truncation);
+    TruncatedCorrection<dim> cycle(levels, Cycle::V, 1);
+    levels.update(truncation);
     const Eigen::MatrixXd C = to_dense_operator(cycle, problem, setup.Z);
     const Eigen::MatrixXd factor =
       Eigen::LLT<Eigen::MatrixXd>(setup.reduced).matrixL();
@@ -346,8 +383,8 @@ namespace
     for (unsigned int i = 0; i < problem.constraints().n_nodes(); ++i)
       truncation.set(i, zero_block<dim>(), zero_block<dim>());
     TestLevels<dim>          levels(problem);
-            TruncatedCorrection<dim> cycle(levels, Cycle::V, 1);
-            levels.update(truncation);
+    TruncatedCorrection<dim> cycle(levels, Cycle::V, 1);
+    levels.update(truncation);
     VectorType r = problem.leaf_vector(), v(r);
     v            = 17.;
     cycle.apply(v, r);
@@ -484,8 +521,11 @@ int
 main(int argc, char **argv)
 {
   Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  test_linear<2>(1);
-  test_linear<3>(1);
+  for (const bool is_stretched : {false, true})
+    {
+      test_linear<2>(1, is_stretched);
+      test_linear<3>(1, is_stretched);
+    }
   test_two_levels<2>(1);
   test_two_levels<3>(1);
   test_nothing_free<2>();

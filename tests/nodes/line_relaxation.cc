@@ -8,7 +8,9 @@
 // - values and residual stay truncated, and the residual is that of
 //   $T(A+\omega'')T$;
 // - each sweep lowers the energy, on several processes as well;
-// - a sweep forwards and one backwards are a symmetric operator.
+// - a sweep forwards and one backwards are a symmetric operator;
+// - components that are held keep their values, and the energy falls;
+// - a line is cut where more than neighbours couple.
 
 #include <common/nodes/line_relaxation.h>
 
@@ -54,6 +56,18 @@ namespace
 
 
 
+  // On all processes.
+  unsigned int
+  size_of(const NodeRanges &nodes)
+  {
+    unsigned int n = 0;
+    for (const RowRange &range : nodes)
+      n += range.second - range.first;
+    return Utilities::MPI::sum(n, MPI_COMM_WORLD);
+  }
+
+
+
   // Sticking and sliding nodes anywhere, some with a second derivative.
   template <int dim>
   Truncation<dim>
@@ -87,8 +101,12 @@ namespace
     mesh->refine_global(1);
     Discretized<dim>            d(scene, *mesh);
     const NodeBlockMatrix<dim> &A = d.stiffness().blocks();
-    LineRelaxation<dim>         relaxation(A, movable_nodes(d), MPI_COMM_WORLD);
-    const bool                  is_stretched = direction < dim;
+    const auto is_prescribed = [&](const unsigned int i, const unsigned int c) {
+      return d.constraints().is_prescribed(i, c);
+    };
+    LineRelaxation<dim> relaxation(
+      A, movable_nodes(d), is_prescribed, MPI_COMM_WORLD);
+    const bool is_stretched = direction < dim;
     check_everywhere(relaxation.has_lines() == is_stretched,
                      is_stretched ? "there are lines" : "there are none");
     if (!is_stretched)
@@ -108,11 +126,12 @@ namespace
     check_everywhere(straight, "they go in the short direction");
     const auto n_covered =
       Utilities::MPI::sum((unsigned int)covered.size(), MPI_COMM_WORLD);
-    unsigned int n_movable = 0;
-    for (const RowRange &range : movable_nodes(d))
-      n_movable += range.second - range.first;
-    n_movable = Utilities::MPI::sum(n_movable, MPI_COMM_WORLD);
+    const unsigned int n_movable = size_of(movable_nodes(d));
     check_everywhere(n_covered > .7 * n_movable, "and cover the mesh");
+    check_everywhere(n_covered +
+                         size_of(relaxation.other_nodes(movable_nodes(d))) ==
+                       n_movable,
+                     "what is in no line are the other nodes");
 
     Random                random(3);
     const Truncation<dim> truncation = random_truncation(d, random);
@@ -202,6 +221,98 @@ namespace
                  other   = b * forwards_and_backwards(c);
     check_everywhere(std::abs(one - other) < 1e-10 * std::abs(one),
                      "forwards and backwards is symmetric");
+
+    // Without truncation, but with components that are held: on levels.
+    const auto is_held = [](const unsigned int i, const unsigned int c) {
+      return i % 3 == c;
+    };
+    LineRelaxation<dim> holding(A, movable_nodes(d), is_held, MPI_COMM_WORLD);
+    holding.factorise();
+    const Truncation<dim> none(d.constraints());
+    VectorType            y = random_vector();
+    none.apply(y.begin());
+    d.stiffness().update_ghosts(y);
+    const VectorType start          = y;
+    const auto       energy_without = [&](const VectorType &v) {
+      VectorType Av = d.vector();
+      d.stiffness().update_ghosts(v);
+      A.vmult(Av.begin(), v.begin());
+      return .5 * (v * Av) - b * v;
+    };
+    holding.run({3, false}, b.begin(), y.begin(), ghosts);
+    bool holds = true, moves = false;
+    for (unsigned int i = 0; i < A.n_rows(); ++i)
+      for (unsigned int c = 0; c < dim; ++c)
+        {
+          const double change =
+            y.local_element(dim * i + c) - start.local_element(dim * i + c);
+          if (is_held(i, c))
+            holds = holds && change == 0.;
+          else
+            moves = moves || change != 0.;
+        }
+    check_everywhere(holds && moves, "held components keep their values");
+    check_everywhere(energy_without(y) < energy_without(start),
+                     "and the energy falls");
+  }
+
+
+
+  // A ring of strongly coupled nodes, for which a matrix is made by hand, with
+  // chords in some places as a bend has them: the lines are pieces of it,
+  // inside of which nothing couples but neighbours, so that a sweep over one
+  // line solves its problem. On one process.
+  void
+  test_ring()
+  {
+    constexpr unsigned int n = 40;
+    const auto chord         = [](const unsigned int i, const unsigned int j) {
+      return i + 2 == j && i % 10 == 0;
+    };
+    const auto strength = [&](const unsigned int i, const unsigned int j) {
+      const unsigned int low = std::min(i, j), high = std::max(i, j);
+      if (high == low + 1 || (low == 0 && high == n - 1))
+        return 1.;
+      return chord(low, high) ? .1 : 0.;
+    };
+    auto pattern = std::make_shared<NodePattern>();
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        std::vector<unsigned int> columns = {i};
+        for (unsigned int j = 0; j < n; ++j)
+          if (j != i && strength(i, j) > 0)
+            columns.push_back(j);
+        pattern->append_row(columns);
+      }
+    NodeBlockMatrix<2> A(pattern);
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        double sum = .1;
+        for (std::size_t e = A.row_begin(i) + 1; e < A.row_end(i); ++e)
+          {
+            const double s = strength(i, A.column(e));
+            A.block(e)[0] = A.block(e)[3] = -s;
+            sum += s;
+          }
+        A.block(A.row_begin(i))[0] = A.block(A.row_begin(i))[3] = sum;
+      }
+    LineRelaxation<2> relaxation(
+      A,
+      {{0, n}},
+      [](const unsigned int, const unsigned int) { return false; },
+      MPI_COMM_SELF);
+    unsigned int n_in_lines     = 0;
+    bool         is_tridiagonal = true;
+    for (const std::vector<unsigned int> &line : relaxation.lines())
+      {
+        n_in_lines += line.size();
+        for (unsigned int k = 0; k < line.size(); ++k)
+          for (unsigned int l = k + 2; l < line.size(); ++l)
+            is_tridiagonal = is_tridiagonal && strength(line[k], line[l]) == 0.;
+      }
+    check(relaxation.lines().size() > 1 && n_in_lines > .8 * n,
+          "a ring with chords is cut into lines");
+    check(is_tridiagonal, "inside of which only neighbours couple");
   }
 } // namespace
 
@@ -225,4 +336,6 @@ main(int argc, char **argv)
   test<3>(3);
   name(3, "short in z");
   test<3>(2);
+  if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1)
+    test_ring();
 }

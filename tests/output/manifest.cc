@@ -109,7 +109,7 @@ main()
   });
   try_to("a manifest of a later version", "manifest", [&]() {
     // With the right checksum of its lines.
-    const std::string  lines = "checkpoint, format 2\nlevel 3\n";
+    const std::string  lines = "checkpoint, format 3\nlevel 3\n";
     std::istringstream in(lines);
     std::ostringstream last;
     last << std::hex << Manifest::checksum(in);

@@ -83,7 +83,12 @@ chroot "$root" /usr/bin/env -i HOME=/root LC_ALL=C.UTF-8 \
   DEBIAN_FRONTEND=noninteractive \
   bash /friction/tests/portability/in_root.sh "$compiler" "$tag" /friction/row ||
   echo "in_root.sh ended with an error" >&2
+# Which state of the sources that is; with a + what is not committed.
+git="git -c safe.directory=$sources -C $sources"
+state=$($git rev-parse --short=7 HEAD)
+$git diff --quiet HEAD -- common step-friction-2d step-friction-3d tests || state=$state+
 [ -s "$result" ] || echo "| $suite | $compiler | ? | no | ? | none | none | nothing could be installed |" >"$result"
+sed -i "s/\$/ $state |/" "$result"
 cat "$result"
 
 # The row takes the place of the one that begins with the same two cells.
