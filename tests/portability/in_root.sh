@@ -91,7 +91,8 @@ dealii=$(sed -n 's/.*DEAL_II_PACKAGE_VERSION "\([^"]*\)".*/\1/p' \
   "$(find /usr/include -path '*deal.II/base/config.h' | head -1)")
 
 # What tests need, without browsers and pictures.
-apt-get install -y --no-install-recommends make numdiff >>packages.log 2>&1
+apt-get install -y --no-install-recommends make numdiff python3-h5py \
+  >>packages.log 2>&1
 
 tables=
 for scene in hertz:2d cylinder:3d; do
