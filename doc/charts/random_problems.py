@@ -89,6 +89,7 @@ class Problem:
     def obstacle(self):
         below = f"{self.bottom:g}"
         kind = self.random.choice(("plane", "plane", "bumps", "waves"))
+        self.is_simple = False
         # How far the body comes down: some percent of its height.
         self.depth = self.log_between(1e-3, 0.05) * self.height
         if kind == "plane":
@@ -105,13 +106,14 @@ class Problem:
             self.set(Obstacle={"Kind": "plane",
                                "Point": ", ".join(f"{p:.6g}" for p in point),
                                "Normal": ", ".join(f"{n:.6g}" for n in normal)})
+            self.is_simple = not (self.is_disc and angle)
             # A slope needs more than that to be touched at more than an edge.
             if angle and not self.is_disc:
                 self.depth += 0.3 * math.tan(math.radians(abs(angle))) * \
                     self.between(0., 0.2)
             return "plane" + (f", {angle:.0f} degrees" if angle else "")
         if kind == "bumps":
-            n, radius = self.random.randint(1, 5), self.log_between(0.05, 3.)
+            n, radius = self.random.randint(1, 5), self.log_between(0.3, 3.)
             centers = []
             for _ in range(n):
                 x = [self.between(-0.3, 0.3) if self.is_disc else
@@ -151,13 +153,18 @@ class Problem:
                       else "interpolated")
         most = self.log_between(500, 10000) if self.dim == 2 else \
             self.log_between(300, 6000)
+        # The first mesh has to see an obstacle that is not flat, or a disc's side,
+        # or it touches nothing, and nothing says where to refine.
+        needed = 0 if self.is_simple else 5 - self.dim
         if self.is_disc:
-            first = 0 if self.guess == "interpolated" else 3
+            first = needed if self.guess == "interpolated" else 3
         else:
             n = self.dim * self.cells
             levels = math.floor(math.log(most / n, 2 ** self.dim))
             first = max(0, levels) if self.guess != "interpolated" else \
-                min(1, max(0, levels))
+                min(max(1, needed), max(0, levels))
+            if self.cells == 1:
+                first = max(first, needed)
         adaptive = self.guess == "interpolated" and self.chance(0.6)
         levels = 0 if self.guess != "interpolated" else 25 if adaptive else \
             (3 if self.is_disc else

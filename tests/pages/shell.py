@@ -26,6 +26,7 @@ LONG_STUDIES = {
     "doc": "pages/build",
     "charts": "charts/quick",
     "charts-draw": "charts/quick",
+    "robustness": "robustness/quick",
     "benchmark": "benchmark/quick",
     "figures": "figures/quick",
     "figures-2d": "figures/quick",
