@@ -18,6 +18,7 @@
 #include <common/algorithms/contact_solver.h>
 #include <common/algorithms/discretization_stop.h>
 #include <common/algorithms/initial_guess.h>
+#include <common/algorithms/load_steps.h>
 #include <common/contact/contact_forces.h>
 #include <common/contact/force_balance.h>
 #include <common/discretization/discretization.h>
@@ -82,7 +83,7 @@ namespace StepFriction2d
     // What is modelled: the scene file as the user wrote it, and the functions,
     // boundary ids and obstacle it has been turned into.
     const Parameters parameters;
-    const Scene<dim> scene;
+    Scene<dim>       scene;
 
     // A mesh with a hierarchy of levels, and the discrete problem on it, which
     // is made anew whenever the mesh is refined.
@@ -106,6 +107,9 @@ namespace StepFriction2d
     // <code>history.h5</code>, files for ParaView, and checkpoints.
     DiscretizationStop<dim> stop;
     RunOutput<dim>          output;
+
+    // For scenes with a history.
+    LoadSteps<dim> load_steps;
 
     // Wall times of the present level. What is done once per mesh and what the
     // iteration takes are counted separately.
@@ -410,11 +414,6 @@ namespace StepFriction2d
   // With <code>Output/Forces</code> there are reactions as well: the rows of
   // prescribed degrees of freedom are still in the matrix, for $Au-f$.
   //
-  // Who wants to know more about the latter sets <code>Output/Forces</code>.
-  // Since the rows of prescribed degrees of freedom are still in the matrix,
-  // $Au-f$ has the reactions of whatever holds the body, too, and all forces on
-  // it have to balance.
-  //
   // The history is rewritten as a whole after each level and put in place by
   // renaming. A run that is killed leaves all levels that were complete.
   //
@@ -467,7 +466,8 @@ namespace StepFriction2d
         // found. With <code>Inner tolerance = discretisation</code> the next
         // solution will be stopped when its own error is small compared with
         // that of the mesh, and this is where we learn about the latter.
-        const bool last = level >= parameters.refinement.levels ||
+        const bool last = scene.load_step() > 0 ||
+          level >= parameters.refinement.levels ||
           discretization.dof_handler().n_dofs() >=
             parameters.refinement.maximum_dofs;
         const bool adaptive =
@@ -492,8 +492,21 @@ namespace StepFriction2d
           }
         if (last || !mark_cells(estimate))
           {
-            output.check_end(discretization, displacement, state);
-            return true;
+            if (scene.load_step() + 1 == scene.n_load_steps())
+              {
+                output.check_end(discretization, displacement, state);
+                return true;
+              }
+
+            // A scene with a history (<code>Load steps/Times</code>) goes on
+            // with the loads of the next time, on the same mesh. There friction
+            // counts slip from the present displacement, and nothing else of
+            // the method changes: the contact nodes know where they have been,
+            // and all five parts ask them.
+            load_steps.begin_next(
+              scene, discretization, displacement, tractions);
+            output.begin_load_step(scene);
+            continue;
           }
 
         // Nested iteration: the displacement and the contact tractions are

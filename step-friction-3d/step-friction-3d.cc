@@ -112,7 +112,8 @@ namespace StepFriction3d
   // says nothing about how much friction there is. The work of friction,
   // $\omega(u)$, does: where a node slides, friction is opposite to its slip,
   // so that each of them adds $-R_T\cdot u_T=\mathcal F\tau\,|u_T|$, and nodes
-  // that stick add nothing.
+  // that stick add nothing. In a later load step slip counts from the end of
+  // the one before, and this is the work of the step.
   //
   // This is also an example of how to evaluate a solution. A process has its
   // own contact nodes, and each node its normal and the measure $m_p$ by which
@@ -133,7 +134,8 @@ namespace StepFriction3d
         for (unsigned int d = 0; d < 3; ++d)
           {
             R[d] = p.measure * nest.tractions().local_element(3 * p.node + d);
-            u[d] = nest.displacement().local_element(3 * p.node + d);
+            u[d] = nest.displacement().local_element(3 * p.node + d) -
+              p.slip_origin[d];
           }
         const Tensor<1, 3> R_T = R - (R * p.normal()) * p.normal();
         force += R;
@@ -185,6 +187,9 @@ namespace StepFriction3d
   // discrete solutions grow without bound, and the estimator is right to find
   // the largest errors always in the same place. <code>Refinement/Contact
   // zone</code> refines all cells in contact besides.
+  //
+  // If the scene has a history (<code>Load steps/Times</code>), the later steps
+  // are solved on the last mesh, each from what the one before has found.
   bool
   run(const Parameters &parameters, const Start start)
   {
@@ -199,6 +204,11 @@ namespace StepFriction3d
       {
         nest.refine();
         output.save_checkpoint(nest);
+      }
+    while (nest.report().converged && nest.begin_next_load_step())
+      {
+        output.begin_load_step(nest.scene());
+        solve(nest, output);
       }
 
     output.add_end(nest);

@@ -157,7 +157,8 @@ namespace Friction
   bool
   NestedIteration<dim>::is_last() const
   {
-    return the_level >= the_parameters.refinement.levels ||
+    return the_scene.load_step() > 0 ||
+      the_level >= the_parameters.refinement.levels ||
       the_discretization.dof_handler().n_dofs() >=
       the_parameters.refinement.maximum_dofs;
   }
@@ -221,6 +222,23 @@ namespace Friction
     if (!mark(needs_estimate() ? estimate() : ErrorEstimate()))
       return false;
     refine();
+    return true;
+  }
+
+
+
+  template <int dim>
+  bool
+  NestedIteration<dim>::begin_next_load_step()
+  {
+    if (the_scene.load_step() + 1 == the_scene.n_load_steps())
+      return false;
+    ++the_level;
+    guessed_displacement = u;
+    guessed_tractions    = contact_stresses;
+    load_steps.begin_next(
+      the_scene, the_discretization, guessed_displacement, guessed_tractions);
+    the_discretization.assemble(bilinear_form);
     return true;
   }
 

@@ -3,6 +3,7 @@
 
 #include <common/algorithms/contact_solver.h>
 #include <common/algorithms/discretization_stop.h>
+#include <common/algorithms/load_steps.h>
 #include <common/discretization/discretization.h>
 #include <common/estimate/residual_estimator.h>
 
@@ -15,7 +16,8 @@ namespace Friction
   /**
    * A scene solved on one mesh after the other, each with the solution of the
    * one before as its initial guess: mesh, discretisation, solution, estimate
-   * and refinement, one call at a time. step-friction-2d does the same in view.
+   * and refinement, one call at a time; and then, on the last mesh, for one
+   * load step after the other. step-friction-2d does the same in view.
    *
    * All functions are collective.
    */
@@ -69,7 +71,8 @@ namespace Friction
                    const dealii::types::global_dof_index n_dofs,
                    const double                          contraction);
 
-    /** Whether the parameters do not want a finer mesh than this. */
+    /** Whether the parameters do not want a finer mesh than this; in later load
+     * steps they never do. */
     bool is_last() const;
 
     /**
@@ -91,6 +94,11 @@ namespace Friction
     /** All of that: goes on to the next mesh, unless this is the last one or
      * there is nothing to refine. */
     bool advance();
+
+    /** Goes on to the next load step on this mesh, unless there is none, and
+     * discretises anew; see LoadSteps. Its solutions continue the count of
+     * levels. */
+    bool begin_next_load_step();
 
     const Parameters &
     parameters() const
@@ -182,12 +190,13 @@ namespace Friction
     bool needs_estimate() const;
 
     const Parameters    the_parameters;
-    const Scene<dim>    the_scene;
+    Scene<dim>          the_scene;
     const CellForm<dim> bilinear_form;
 
     std::unique_ptr<parallel::distributed::Triangulation<dim>> triangulation;
     Discretization<dim>     the_discretization;
     DiscretizationStop<dim> stop;
+    LoadSteps<dim>          load_steps;
     unsigned int            the_level = 0;
 
     VectorType   guessed_displacement, guessed_tractions;

@@ -62,14 +62,13 @@ namespace Friction
 
 
 
-    // The part of a vector at a contact node in the first tangents.
+    // The vector with these components in the first tangents of a contact node.
     template <int dim>
     Tensor<1, dim>
-    tangential_part(const ContactNode<dim> &node,
-                    const VectorType       &v,
-                    const unsigned int      n_tangents = dim - 1)
+    tangential_part(const ContactNode<dim>            &node,
+                    const std::array<double, dim - 1> &components,
+                    const unsigned int                 n_tangents = dim - 1)
     {
-      const auto     components = tangential_components<dim>(node, v);
       Tensor<1, dim> sum;
       for (unsigned int t = 0; t < n_tangents; ++t)
         sum += components[t] * node.frame[t + 1];
@@ -162,10 +161,15 @@ namespace Friction
         const double tau =
           coulomb ? std::max(0., pressing) : state.normal_force(p);
         const double bound = problem.effective_coefficient(node) * tau;
-        const auto r_T = tangential_part(node, residual, node.n_free_tangents);
-        const auto u_T = tangential_part(node, u);
-        const double slip     = force_for<dim>(problem, node.node, u_T);
-        const auto   slips_by = tangential_part(node, u, node.n_free_tangents) /
+        const auto   r_T =
+          tangential_part<dim>(node,
+                               tangential_components<dim>(node, residual),
+                               node.n_free_tangents);
+        const auto   components = slip_components<dim>(node, u);
+        const auto   u_T        = tangential_part<dim>(node, components);
+        const double slip       = force_for<dim>(problem, node.node, u_T);
+        const auto   slips_by =
+          tangential_part<dim>(node, components, node.n_free_tangents) /
           (slip == 0 ? 1. : u_T.norm());
         raise(result.cone, relative(r_T.norm() - bound));
 

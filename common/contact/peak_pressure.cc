@@ -14,6 +14,8 @@ namespace Friction
     : problem(problem)
     , u(u)
   {
+    if (problem.previous_displacement != nullptr)
+      previous_length = problem.previous_displacement->linfty_norm();
     problem.stiffness.update_ghosts(u);
     double inside = 0;
     for (unsigned int p = 0; p < problem.contact.size(); ++p)
@@ -71,7 +73,7 @@ namespace Friction
   {
     const double *u_p = u.begin() + dim * node;
     return 1e-8 * trace<dim>(problem.stiffness.diagonal_block(node)) *
-      std::sqrt(dot<dim>(u_p, u_p));
+      std::max(std::sqrt(dot<dim>(u_p, u_p)), previous_length);
   }
 
 

@@ -75,8 +75,10 @@ namespace Friction
 
     /**
      * A part in 1e8 of the force that the displacement of a node would cause if
-     * all others stayed where they are. Of what is left where a body merely
-     * moves, nothing but rounding errors, this is still a large multiple.
+     * all others stayed where they are; in a later load step the largest one
+     * of the step before, if that is larger. Of what is left where a body
+     * merely moves, or where all loads have been taken away, nothing but
+     * rounding errors, this is still a large multiple.
      */
     double force_of_rounding(const unsigned int node) const;
 
@@ -84,6 +86,7 @@ namespace Friction
     const DiscreteProblem<dim> &problem;
     const VectorType           &u;
     double                      stress = 0, touching = 0;
+    double                      previous_length = 0;
 
     // Nothing is no part of nothing.
     double

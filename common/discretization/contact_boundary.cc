@@ -215,6 +215,21 @@ namespace Friction
 
 
 
+  template <int dim>
+  void
+  ContactBoundary<dim>::set_slip_origin(const VectorType &u)
+  {
+    for (ContactNode<dim> &node : nodes)
+      {
+        const auto components = tangential_components<dim>(node, u);
+        node.slip_origin      = Tensor<1, dim>();
+        for (unsigned int t = 1; t < dim; ++t)
+          node.slip_origin += components[t - 1] * node.frame[t];
+      }
+  }
+
+
+
   // The law of friction holds at nodes, and so a node has the coefficient of
   // its point. What nodes keep of it is a fraction, so that all of them follow
   // when the coefficient is made smaller for a while, see SafeguardedSolver.

@@ -47,6 +47,11 @@ namespace Friction
     /// is given, and not that of the solution.
     bool bound_is_given = false;
 
+    /// The tangential displacement s that friction counts from, a vector in the
+    /// tangent plane and a length: slip is $u_T-s$. Zero but in later load
+    /// steps.
+    Tensor<1, dim> slip_origin;
+
     /// Number of tangential directions that the node may move in. The tangents
     /// in the frame are sorted: first the free ones, then those in which the
     /// displacement is prescribed.
@@ -94,6 +99,10 @@ namespace Friction
                     const AffineConstraints<double> &hanging,
                     const NodalConstraints<dim>     &constraints,
                     const Scene<dim>                &scene);
+
+    /** From now on friction counts slip from the tangential part of @p u, the
+     * displacement that an earlier load step has ended with. */
+    void set_slip_origin(const VectorType &u);
 
     unsigned int
     size() const
@@ -170,6 +179,20 @@ namespace Friction
     for (unsigned int t = 1; t < dim; ++t)
       for (unsigned int d = 0; d < dim; ++d)
         result[t - 1] += p.frame[t][d] * v.local_element(dim * p.node + d);
+    return result;
+  }
+
+  /** The slip $u_T-s$ at a contact node, in its frame: what friction acts
+   * against. */
+  template <int dim>
+  std::array<double, dim - 1>
+  slip_components(const ContactNode<dim> &p, const VectorType &u)
+  {
+    std::array<double, dim - 1> result{};
+    for (unsigned int t = 1; t < dim; ++t)
+      for (unsigned int d = 0; d < dim; ++d)
+        result[t - 1] += p.frame[t][d] *
+          (u.local_element(dim * p.node + d) - p.slip_origin[d]);
     return result;
   }
 } // namespace Friction

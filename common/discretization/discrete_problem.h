@@ -41,6 +41,10 @@ namespace Friction
     /// this is Coulomb's law, and nodes know better.
     double friction_coefficient;
 
+    /// That of the end of the load step before, from which friction counts
+    /// slip, see ContactNode::slip_origin; null in a first step.
+    const VectorType *previous_displacement = nullptr;
+
     MPI_Comm
     communicator() const
     {

@@ -63,6 +63,7 @@ namespace Friction
   {
     Timer          timer;
     const RunScope part(Compatibility::mpi_communicator(mesh), RunPart::dofs);
+    previous_displacement.reset();
     dofs.distribute_dofs(fe);
     dofs.distribute_mg_dofs();
     renumber_nodes(dofs);
@@ -143,6 +144,20 @@ namespace Friction
     }
     nodal_constraints = std::make_unique<NodalConstraints<dim>>(
       dofs, hanging, prescribed, assembler->coupled_dofs());
+  }
+
+
+
+  template <int dim>
+  void
+  Discretization<dim>::set_slip_origin(const VectorType &displacement)
+  {
+    auto origin = std::make_unique<VectorType>(vector());
+    origin->copy_locally_owned_data_from(displacement);
+    interpolate_hanging_nodes(*origin);
+    contact_boundary->set_slip_origin(*origin);
+    previous_displacement                   = std::move(origin);
+    discrete_problem->previous_displacement = previous_displacement.get();
   }
 
 

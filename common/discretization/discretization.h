@@ -83,6 +83,23 @@ namespace Friction
      *                       to be zero where something is prescribed. */
     void assemble(const CellForm<dim> &bilinear_form);
 
+    /**
+     * Has friction count slip from a displacement on, that of the end of an
+     * earlier load step: until the next set_up() the law of friction is about
+     * $u_T-s$, s being the tangential part of @p displacement at a contact
+     * node. Normal contact, and all forces, remain those of u. Collective.
+     * @param displacement  on this mesh; hanging nodes are interpolated.
+     */
+    void set_slip_origin(const VectorType &displacement);
+
+    /** That displacement, with ghosts and hanging nodes; null in a first load
+     * step. */
+    const VectorType *
+    slip_origin() const
+    {
+      return previous_displacement.get();
+    }
+
     const Scene<dim> &
     scene() const
     {
@@ -177,6 +194,7 @@ namespace Friction
     std::unique_ptr<NodalConstraints<dim>> nodal_constraints;
     std::unique_ptr<ContactBoundary<dim>>  contact_boundary;
     std::unique_ptr<DiscreteProblem<dim>>  discrete_problem;
+    std::unique_ptr<VectorType>            previous_displacement;
     std::vector<double>                    face_measures;
 
     double seconds_of_set_up = 0, seconds_of_assembly = 0;

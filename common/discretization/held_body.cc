@@ -100,12 +100,16 @@ namespace Friction
     normals_of_other_surface(const Discretization<dim> &discretization)
     {
       std::vector<Tensor<1, dim>> result;
-      const Scene<dim>           &scene   = discretization.scene();
-      const auto                  normals = normals_of_faces(discretization);
+      const Scene<dim>           &scene      = discretization.scene();
+      const auto                 &conditions = scene.contact_conditions();
+      std::map<unsigned int, std::vector<Tensor<1, dim>>> normals;
+      if (std::any_of(conditions.begin(), conditions.end(), [](const auto &c) {
+            return c.normal == ContactNormal::obstacle;
+          }))
+        normals = normals_of_faces(discretization);
       for (const ContactNode<dim> &p : discretization.contact())
         {
-          const ContactCondition<dim> &condition =
-            scene.contact_conditions()[p.condition];
+          const ContactCondition<dim> &condition = conditions[p.condition];
           if (condition.normal == ContactNormal::body)
             {
               result.push_back(

@@ -35,9 +35,10 @@ namespace Friction
       discretization.interpolate_hanging_nodes(*vector);
 
     EstimatorContact contact;
-    contact.traction   = &tractions;
-    contact.normal     = &normal;
-    contact.gap_vector = &gap_vector;
+    contact.traction    = &tractions;
+    contact.normal      = &normal;
+    contact.gap_vector  = &gap_vector;
+    contact.slip_origin = discretization.slip_origin();
     return estimate_error(discretization.mapping(),
                           discretization.dof_handler(),
                           problem,

@@ -872,7 +872,12 @@ namespace Friction
           pressure[k]            = -(t * n);
           distance[k]            = (g - u) * n;
           tangential_traction[k] = t + pressure[k] * n;
-          slip[k]                = u - (u * n) * n;
+
+          if (contact.slip_origin != nullptr)
+            for (unsigned int c = 0; c < dim; ++c)
+              u[c] -=
+                (*contact.slip_origin)(cell->vertex_dof_index(of_face[k], c));
+          slip[k] = u - (u * n) * n;
         }
 
       const auto &friction = problem.contact.at(cell->face(f)->boundary_id());

@@ -78,6 +78,9 @@ namespace Friction
     /// the obstacle. Without them the complementarity terms are left out.
     const VectorType *normal     = nullptr;
     const VectorType *gap_vector = nullptr;
+
+    /// In later load steps, the displacement that friction counts slip from.
+    const VectorType *slip_origin = nullptr;
   };
 
 
@@ -137,7 +140,8 @@ namespace Friction
    * Finite Element Methods, 2013, chapter 4). On the contact boundary the
    * multiplier $t_h$, the nodal contact tractions interpolated linearly, takes
    * the place of a prescribed traction, and what remains of the contact laws
-   * between the nodes is added (Hild and Nicaise, Numer. Math. 101, 2005, for
+   * between the nodes, $u_{h,T}$ counted from where friction does, is added
+   * (Hild and Nicaise, Numer. Math. 101, 2005, for
    * contact; Krause, Veeser and Walloth, Numer. Math. 130, 2015, for the
    * distinction between the discrete contact force and the boundary stress).
    * $p_h=-t_h\cdot n$.

@@ -183,7 +183,7 @@ namespace Friction
           {
             const double bound =
               problem.effective_coefficient(node) * state.normal_force(p);
-            const auto   u_T = tangential_components<dim>(node, x.u);
+            const auto   u_T = slip_components<dim>(node, x.u);
             const double stiffness =
               trace<dim>(problem.stiffness.diagonal_block(node.node)) / dim;
             if (bound > 0 && !state.sticks(p) && !all_is_held &&
@@ -213,7 +213,7 @@ namespace Friction
         if (state.normal_force(p) > 0 && !state.sticks(p))
           {
             const ContactNode<dim> &node = contact[p];
-            const auto              u_T = tangential_components<dim>(node, x.u);
+            const auto              u_T  = slip_components<dim>(node, x.u);
             const double            norm = norm_of(u_T);
             if (norm > 0)
               for (unsigned int t = 1; t < dim; ++t)
@@ -266,7 +266,7 @@ namespace Friction
             !state.sticks(p))
           {
             // The displacement keeps a part in the direction of its slip.
-            const auto     u_T  = tangential_components<dim>(node, x.u);
+            const auto     u_T  = slip_components<dim>(node, x.u);
             const double   norm = norm_of(u_T);
             Tensor<1, dim> back;
             for (unsigned int t = 1; t < dim; ++t)

@@ -181,18 +181,21 @@ namespace Friction
     double                     *value  = x.u.begin() + dim * node.node;
 
     // The force that the other nodes leave, r~ = r + A_pp u_p in (6.18); at an
-    // interface to other processes with the damping in A_pp.
+    // interface to other processes with the damping in A_pp. Displacements of
+    // the local problem count from where friction does.
     const NodeValue<dim> product = matrix.row_times(node.node, x.u.begin());
     const auto           damped  = damped_diagonals.find(node.node);
+    Tensor<1, dim>       residual, force, old_value;
+    NodeValue<dim>       from_origin;
+    for (unsigned int d = 0; d < dim; ++d)
+      from_origin[d] = old_value[d] = value[d] - node.slip_origin[d];
     const NodeValue<dim> diagonal =
       times<dim>(damped == damped_diagonals.end()
                    ? matrix.block(matrix.row_begin(node.node))
                    : damped->second.data(),
-                 value);
-    Tensor<1, dim> residual, force, old_value;
+                 from_origin.data());
     for (unsigned int d = 0; d < dim; ++d)
       {
-        old_value[d] = value[d];
         residual[d] =
           problem.forces.local_element(dim * node.node + d) - product[d];
         force[d] = residual[d] + diagonal[d];
@@ -220,7 +223,7 @@ namespace Friction
 
     const LocalSolution<dim> z =
       local_problems[p].solve(b, bound, tangential, x.state.in_contact(p));
-    Tensor<1, dim> new_value = z.normal * node.normal();
+    Tensor<1, dim> new_value = node.slip_origin + z.normal * node.normal();
     for (unsigned int t = 1; t < dim; ++t)
       new_value += z.tangential[t - 1] * node.frame[t];
     for (unsigned int d = 0; d < dim; ++d)

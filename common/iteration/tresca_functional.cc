@@ -79,7 +79,7 @@ namespace Friction
         {
           double square = 0;
           for (const double component :
-               tangential_components<dim>(problem.contact[p], u))
+               slip_components<dim>(problem.contact[p], u))
             square += component * component;
           sum += problem.effective_coefficient(problem.contact[p]) *
             state.normal_force(p) * std::sqrt(square);
@@ -142,7 +142,7 @@ namespace Friction
         if (state.normal_force(p) > 0 && !state.sticks(p))
           {
             const ContactNode<dim> &node = problem.contact[p];
-            const auto              a    = tangential_components<dim>(node, u);
+            const auto              a    = slip_components<dim>(node, u);
             const auto              b    = tangential_components<dim>(node, v);
             double                  uu = 0, uv = 0;
             // What is prescribed does not change, but takes part in the slip.
@@ -181,7 +181,7 @@ namespace Friction
     const ContactState &state = x.state;
 
     // Per node with friction: bound, and the coefficients of
-    // |u_T + alpha v_T|^2.
+    // |u_T - s + alpha v_T|^2.
     struct Term
     {
       double bound, uu, uv, vv;
@@ -192,7 +192,7 @@ namespace Friction
         if (state.normal_force(p) > 0)
           {
             const ContactNode<dim> &node = problem.contact[p];
-            const auto              a    = tangential_components<dim>(node, u);
+            const auto              a    = slip_components<dim>(node, u);
             const auto              b    = tangential_components<dim>(node, v);
             Term term = {problem.effective_coefficient(node) *
                            state.normal_force(p),

@@ -322,7 +322,8 @@ namespace Friction
 
 
 
-    // Where there is contact, the tangential part of the displacement.
+    // Where there is contact, the tangential part of the displacement, counted
+    // from where friction does.
     template <int dim>
     Tensor<1, dim>
     slip_of_point(const Tensor<1, dim>   &displacement,
@@ -393,23 +394,34 @@ namespace Friction
     if (format == FieldFormat::hdf5)
       write_body_hdf5(level, fields, piece);
     else
-      write_piece("body",
-                  level,
-                  piece,
-                  body_files,
-                  Compatibility::mpi_communicator(fields.dof_handler));
+      write_piece("body", level, piece, fields, body_files);
   }
 
 
 
   template <int dim>
   void
-  FieldWriter<dim>::write_piece(const std::string &what,
-                                const unsigned int level,
-                                const VtuPiece    &piece,
-                                TimesAndNames     &files,
-                                const MPI_Comm     communicator)
+  FieldWriter<dim>::add_to_list(TimesAndNames     &files,
+                                const double       time,
+                                const std::string &name)
   {
+    if (!files.empty() && files.back().first == time)
+      files.pop_back();
+    files.emplace_back(time, name);
+  }
+
+
+
+  template <int dim>
+  void
+  FieldWriter<dim>::write_piece(const std::string      &what,
+                                const unsigned int      level,
+                                const VtuPiece         &piece,
+                                const LevelFields<dim> &fields,
+                                TimesAndNames          &files)
+  {
+    const MPI_Comm communicator =
+      Compatibility::mpi_communicator(fields.dof_handler);
     const unsigned int rank = Utilities::MPI::this_mpi_process(communicator);
     remove_old_pieces(what, level, files, communicator);
     on_all_processes(communicator, [&]() {
@@ -427,7 +439,7 @@ namespace Friction
                                level,
                                Utilities::MPI::n_mpi_processes(communicator)));
       });
-      files.emplace_back(level, record);
+      add_to_list(files, fields.time.value_or(level), record);
       directory.write(what + ".pvd", [&](std::ostream &out) {
         DataOutBase::write_pvd_record(out, files);
       });
@@ -487,6 +499,7 @@ namespace Friction
     const DoFHandler<dim> &dof_handler = fields.dof_handler;
     const MPI_Comm communicator = Compatibility::mpi_communicator(dof_handler);
     const bool     has_cells    = piece.n_cells() > 0;
+    const double   time         = fields.time.value_or(level);
 
     DataOut<dim> data_out;
     data_out.attach_dof_handler(dof_handler);
@@ -549,12 +562,15 @@ namespace Friction
             data_out.write_hdf5_parallel(data, temporary, those_with_cells);
             // In the description names are relative to its own place.
             entry =
-              data_out.create_xdmf_entry(data, name, level, those_with_cells);
+              data_out.create_xdmf_entry(data, name, time, those_with_cells);
           }
       });
     if (has_cells)
       MPI_Comm_free(&those_with_cells);
 
+    if (!body_entries.empty() && last_entry_time == time)
+      body_entries.pop_back();
+    last_entry_time = time;
     body_entries.push_back(
       Utilities::MPI::broadcast(communicator, entry, writer));
     on_all_processes(communicator, [&]() {
@@ -648,12 +664,18 @@ namespace Friction
                 const ContactData<dim> data =
                   data_at(face->vertex_dof_index(v, 0));
                 // The displacement is known everywhere.
-                Tensor<1, dim> u;
+                Tensor<1, dim> u, from_origin;
                 for (unsigned int c = 0; c < dim; ++c)
-                  u[c] = displacement(face->vertex_dof_index(v, c));
+                  {
+                    const auto dof = face->vertex_dof_index(v, c);
+                    u[c]           = displacement(dof);
+                    from_origin[c] = fields.slip_origin == nullptr
+                      ? u[c]
+                      : u[c] - (*fields.slip_origin)(dof);
+                  }
                 auto field = piece.point_fields.begin();
                 append_vector(u, *field++);
-                append_vector(slip_of_point(u, data), *field++);
+                append_vector(slip_of_point(from_origin, data), *field++);
                 for (unsigned int k = 0; k < n_contact_vectors; ++k)
                   {
                     Tensor<1, dim> vector;
@@ -667,11 +689,7 @@ namespace Friction
               }
           }
 
-    write_piece("contact",
-                level,
-                piece,
-                contact_files,
-                Compatibility::mpi_communicator(dof_handler));
+    write_piece("contact", level, piece, fields, contact_files);
   }
 
 

@@ -22,6 +22,8 @@
 #include <common/parameters/parameters.h>
 #include <common/scene/materials.h>
 
+#include <limits>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -44,6 +46,14 @@ namespace Friction
 
     /// Estimated errors, one value per active cell; or nothing.
     const dealii::Vector<float> *cell_errors = nullptr;
+
+    /// Likewise the displacement that slip counts from, or nothing.
+    const dealii::LinearAlgebra::distributed::Vector<double> *slip_origin =
+      nullptr;
+
+    /// What the level counts as in lists, which of two levels with the same
+    /// time have the later one only; if not given, its number.
+    std::optional<double> time = {};
   };
 
 
@@ -55,11 +65,12 @@ namespace Friction
    *
    * Files, NN being the level: `body-NN.pvtu` and `contact-NN.pvtu` with one
    * `.vtu` piece per process, and `body.pvd`, `contact.pvd` over the levels,
-   * which count as times. All files are written beside and renamed. The mesh is
-   * written undeformed; ParaView's filter Warp By Vector deforms it. Each
-   * vertex of a process's cells is one point, those that hang included. Data
-   * have single, points double precision; nothing is compressed, see
-   * write_vtu().
+   * which count as times; with several load steps, over these, each with the
+   * fields of its last level and its own time. All files are written beside and
+   * renamed. The mesh is written undeformed; ParaView's filter Warp By Vector
+   * deforms it. Each vertex of a process's cells is one point, those that hang
+   * included. Data have single, points double precision; nothing is compressed,
+   * see write_vtu().
    *
    * Body: the vector `displacement` in the points, and in the cells the tensor
    * `stress`, which is symmetric and has the components XX, YY, ZZ, XY, YZ, XZ,
@@ -74,7 +85,8 @@ namespace Friction
    *
    * Contact boundary: the vectors `displacement`, `traction` (of the obstacle
    * on the body), `tangential_traction`, `normal`, and `slip`, the tangential
-   * displacement where there is contact; the numbers `pressure` (positive in
+   * displacement where there is contact, in a later load step what it has
+   * changed by in this step; the numbers `pressure` (positive in
    * compression), `friction_bound` (what friction allows of
    * `tangential_traction`), `gap`, `distance` (gap minus normal displacement, 0
    * in contact) and `state` (0 open, 1 sliding, 2 sticking). Nodal tractions
@@ -141,11 +153,15 @@ namespace Friction
 
     using TimesAndNames = std::vector<std::pair<double, std::string>>;
 
-    void write_piece(const std::string &what,
-                     const unsigned int level,
-                     const VtuPiece    &piece,
-                     TimesAndNames     &files,
-                     const MPI_Comm     communicator);
+    static void add_to_list(TimesAndNames     &files,
+                            const double       time,
+                            const std::string &name);
+
+    void write_piece(const std::string      &what,
+                     const unsigned int      level,
+                     const VtuPiece         &piece,
+                     const LevelFields<dim> &fields,
+                     TimesAndNames          &files);
 
     void remove_old_pieces(const std::string   &what,
                            const unsigned int   level,
@@ -161,6 +177,7 @@ namespace Friction
     TimesAndNames                  body_files;
     TimesAndNames                  contact_files;
     std::vector<dealii::XDMFEntry> body_entries;
+    double last_entry_time = std::numeric_limits<double>::quiet_NaN();
   };
 } // namespace Friction
 

@@ -22,10 +22,15 @@ namespace Friction
     // of the record.
     template <int dim, typename F>
     void
-    for_each_level_column(const F &column)
+    for_each_level_column(const bool has_load_steps, const F &column)
     {
       using R = LevelRecord;
       column("level", "level of refinement", Q::number, &R::level);
+      if (has_load_steps)
+        {
+          column("load_step", "load step", Q::number, &R::load_step);
+          column("time", "time of the scene", Q::number, &R::time);
+        }
       column("cells", "cells", Q::number, &R::cells);
       column("dofs", "degrees of freedom", Q::number, &R::dofs);
       column("contact_nodes", "nodes in contact", Q::number, &R::contact_nodes);
@@ -300,6 +305,22 @@ namespace Friction
 
 
 
+    // The last record of each load step.
+    std::vector<LevelRecord>
+    ends_of_steps(const std::vector<LevelRecord> &levels)
+    {
+      std::vector<LevelRecord> ends;
+      for (const LevelRecord &level : levels)
+        {
+          if (!ends.empty() && ends.back().load_step == level.load_step)
+            ends.pop_back();
+          ends.push_back(level);
+        }
+      return ends;
+    }
+
+
+
     std::string
     two_digits(const unsigned int number)
     {
@@ -359,7 +380,7 @@ namespace Friction
   {
     std::size_t size = description.scene.size() +
       description.parameters.size() + description.version.size() +
-      level_records.size() * sizeof(LevelRecord) +
+      level_records.size() * (sizeof(LevelRecord) - 2 * sizeof(double)) +
       cycle_records.size() * (2 * sizeof(unsigned int) + 4 * sizeof(double)) +
       outer_records.size() * (sizeof(unsigned int) + sizeof(double));
     for (const ForceRecord<dim> &record : force_records)
@@ -426,8 +447,18 @@ namespace Friction
     file.set_attribute("version", description.version);
     file.set_attribute("dimension", static_cast<unsigned int>(dim));
 
-    for_each_level_column<dim>(ColumnWriter<LevelRecord>(
-      file.create_group("levels"), level_records, dim, &description.units));
+    for_each_level_column<dim>(
+      description.has_load_steps,
+      ColumnWriter<LevelRecord>(
+        file.create_group("levels"), level_records, dim, &description.units));
+    if (description.has_load_steps)
+      {
+        const std::vector<LevelRecord> ends = ends_of_steps(level_records);
+        for_each_level_column<dim>(
+          true,
+          ColumnWriter<LevelRecord>(
+            file.create_group("steps"), ends, dim, &description.units));
+      }
     if (!cycle_records.empty())
       for_each_cycle_column(ColumnWriter<CycleRecord>(
         file.create_group("cycles"), cycle_records, dim, &description.units));
@@ -463,11 +494,11 @@ namespace Friction
   History<dim>::write_csv(std::ostream &out) const
   {
     std::vector<std::string> lines(level_records.size() + 1);
-    for_each_level_column<dim>([&](const std::string &name,
-                                   const std::string & /*label*/,
-                                   const Quantity quantity,
-                                   const auto     member) {
-      const std::string unit   = unit_of(quantity, dim, description.units);
+    const auto               column = [&](const std::string &name,
+                            const std::string               &/*label*/,
+                            const Quantity quantity,
+                            const auto     member) {
+      const std::string unit = unit_of(quantity, dim, description.units);
       const std::string header = unit.empty() ? name : name + " [" + unit + ']';
       lines[0] += (lines[0].empty() ? "" : ",") + header;
       for (unsigned int i = 0; i < level_records.size(); ++i)
@@ -476,7 +507,8 @@ namespace Friction
           value << std::setprecision(12) << level_records[i].*member;
           lines[i + 1] += (lines[i + 1].empty() ? "" : ",") + value.str();
         }
-    });
+    };
+    for_each_level_column<dim>(description.has_load_steps, column);
     for (const std::string &line : lines)
       out << line << '\n';
   }

@@ -25,7 +25,12 @@ namespace Friction
    */
   struct LevelRecord
   {
-    unsigned int level            = 0;
+    unsigned int level = 0;
+
+    /// The load step, from 1 on, and its time; see RunDescription.
+    unsigned int load_step = 1;
+    double       time      = 0.;
+
     unsigned int cells            = 0;
     unsigned int dofs             = 0;
     unsigned int contact_nodes    = 0;
@@ -98,7 +103,8 @@ namespace Friction
     void
     serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &level &cells &dofs &contact_nodes               &sticky_nodes;
+      archive &level &load_step &time &cells                   &dofs;
+      archive &contact_nodes                                   &sticky_nodes;
       archive &outer_iterations &cycles &attempts &contraction &rho_tau;
       archive &rho_tau_contraction &energy &algebraic_error    &normal_force;
       archive                                   &tangential_force;
@@ -187,13 +193,19 @@ namespace Friction
     /// Of the section that is about it: 1 for 'Contact', 2 for 'Contact 2'.
     unsigned int section = 1;
 
+    /// The tangential displacement that slip counts from, zero but in later
+    /// load steps; not written to the file.
+    dealii::Tensor<1, dim> slip_origin;
+
     /// By how much the node has slid along the obstacle: its tangential
-    /// displacement if it is in contact, and zero if it is not.
+    /// displacement if it is in contact, and zero if it is not. In a later load
+    /// step, by how much it has done so in this step.
     dealii::Tensor<1, dim>
     slip() const
     {
-      return state == 0 ? dealii::Tensor<1, dim>()
-                        : displacement - (displacement * normal) * normal;
+      return state == 0
+        ? dealii::Tensor<1, dim>()
+        : displacement - (displacement * normal) * normal - slip_origin;
     }
 
     template <class Archive>
@@ -201,7 +213,7 @@ namespace Friction
     serialize(Archive &archive, const unsigned int /*version*/)
     {
       archive &dof &point &normal &gap &displacement &force &measure;
-      archive &friction_bound &state                        &section;
+      archive &friction_bound &state &section               &slip_origin;
     }
   };
 
@@ -232,6 +244,9 @@ namespace Friction
     Parameters::UnitNames units = {};
 
     unsigned int n_contact_boundaries = 1;
+
+    /// Whether there are several load steps.
+    bool has_load_steps = false;
   };
 
   /**
@@ -255,6 +270,12 @@ namespace Friction
    * of the forces on the body under its name (levels $\times$ dim), those of
    * obstacles with `_normal` (one-dimensional) and `_tangential` besides, see
    * ForceOnBody; and of all of them `sum` and `imbalance`.
+   *
+   * With several load steps `/levels` has `load_step` and `time` as well, the
+   * number and the time of the step. The solutions of later steps, on the last
+   * mesh of the first one, continue the count of levels. `/steps` then has the
+   * same datasets as `/levels`, but only the values of the last solution of
+   * each step.
    *
    * Each dataset has the attribute `label`, what it is in a few words, and
    * `units` if it has a unit with a name, see unit_of(). Those of

@@ -20,7 +20,7 @@ namespace Friction
                           resolution != nullptr ? record.*resolution : 0.});
       };
       for (const LevelRecord &record : before)
-        if (record.level < last.level)
+        if (record.level < last.level && record.load_step == last.load_step)
           add(record);
       add(last);
       return values;

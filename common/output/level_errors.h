@@ -16,8 +16,8 @@ namespace Friction
    * The peak pressure depends on zones: if the contact zone has fewer than five
    * nodes, or if one or two nodes stick, its error is unknown.
    *
-   * @param before  the levels before, in their order; their errors are not
-   *                used.
+   * @param before  the levels before, in their order, of which those of other
+   *                load steps do not count; their errors are not used.
    */
   void set_errors(LevelRecord                    &record,
                   const std::vector<LevelRecord> &before,

@@ -147,6 +147,8 @@ namespace Friction
     records.solver_memory = report.solver_memory;
     LevelRecord &record   = records.level;
     record.level          = level;
+    record.load_step      = discretization.scene().load_step() + 1;
+    record.time           = discretization.scene().time();
     record.cells = dof_handler.get_triangulation().n_global_active_cells();
     record.dofs  = dof_handler.n_dofs();
     record.outer_iterations    = report.outer_iterations;
@@ -181,6 +183,7 @@ namespace Friction
         row.measure = node.measure;
         row.section =
           discretization.scene().contact_conditions()[node.condition].number;
+        row.slip_origin = node.slip_origin;
         for (unsigned int d = 0; d < dim; ++d)
           row.displacement[d] = displacement.local_element(dim * node.node + d);
         row.force = contact_force(node, report.residual);

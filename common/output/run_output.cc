@@ -75,7 +75,8 @@ namespace Friction
                parameters.text,
                version,
                parameters.output.units,
-               scene.n_contact_boundaries()},
+               scene.n_contact_boundaries(),
+               scene.n_load_steps() > 1},
               communicator)
     , fields(directory,
              scene.materials(),
@@ -97,6 +98,22 @@ namespace Friction
     for (const std::string &warning :
          warnings_at_start(discretization, parameters))
       the_console.warning(warning);
+    if (discretization.scene().n_load_steps() > 1)
+      begin_load_step(discretization.scene());
+  }
+
+
+
+  template <int dim>
+  void
+  RunOutput<dim>::begin_load_step(const Scene<dim> &scene)
+  {
+    if (scene.load_step() > 0 && history.levels().back().contact_nodes > 0)
+      the_console.note(describe_quantities(history.levels().back()));
+    std::ostringstream text;
+    text << "Load step " << scene.load_step() + 1 << " of "
+         << scene.n_load_steps() << ", t = " << scene.time() << '.';
+    the_console.note(text.str());
   }
 
 
@@ -182,7 +199,11 @@ namespace Friction
                             discretization.dof_handler(),
                             discretization.hanging_nodes(),
                             displacement,
-                            cell_errors.size() > 0 ? &cell_errors : nullptr},
+                            cell_errors.size() > 0 ? &cell_errors : nullptr,
+                            discretization.slip_origin(),
+                            discretization.scene().n_load_steps() > 1
+                              ? std::optional<double>(record.time)
+                              : std::nullopt},
                            records.own_contact);
       }
     if (parameters.output.verification)

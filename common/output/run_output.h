@@ -68,6 +68,10 @@ namespace Friction
                    const VectorType          &displacement,
                    const ContactState        &state);
 
+    /** Says that the next load step of a scene begins, after the quantities of
+     * the one before. */
+    void begin_load_step(const Scene<dim> &scene);
+
     /// For remarks and progress, by any process; only those of the first count.
     Console &console();
 

@@ -314,6 +314,7 @@ namespace Friction
     void
     add_contact(ProblemTables                         &tables,
                 const Scene<dim>                      &scene,
+                const bool                             has_slip_origin,
                 const std::vector<ContactRecord<dim>> &own_contact)
     {
       const auto &conditions = scene.contact_conditions();
@@ -337,6 +338,8 @@ namespace Friction
                              {static_cast<unsigned int>(record.dof / dim)});
           tables.add_numbers("contact_states", {record.state});
           tables.add_vector("contact_normals", record.normal);
+          if (has_slip_origin)
+            tables.add_vector("slip_origins", record.slip_origin);
           if (any_varies)
             tables.add_value(
               "friction_coefficients",
@@ -441,6 +444,11 @@ namespace Friction
           file.set_attribute("friction_coefficient" + suffix,
                              contact.friction_coefficient);
         }
+      if (scene.n_load_steps() > 1)
+        {
+          file.set_attribute("load_step", scene.load_step() + 1);
+          file.set_attribute("time", scene.time());
+        }
     }
 
 
@@ -527,7 +535,10 @@ namespace Friction
     ProblemTables own;
     add_cells_together(own, discretization);
     add_nodes(own, discretization, displacement);
-    add_contact(own, discretization.scene(), own_contact);
+    add_contact(own,
+                discretization.scene(),
+                discretization.slip_origin() != nullptr,
+                own_contact);
     gather_and_write(directory.file(verification_file_name(level)),
                      level,
                      discretization,

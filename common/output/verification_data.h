@@ -24,7 +24,8 @@ namespace Friction
    * `contact_boundary` (boundary id, -1 for none), `contact_normal` (`body` or
    * `obstacle`), `friction_law` (`none`, `Tresca` or `Coulomb`),
    * `friction_coefficient` (zero where it varies). If there is a section
-   * 'Contact 2', the same four with `_2` behind their names, and so on.
+   * 'Contact 2', the same four with `_2` behind their names, and so on. With
+   * several load steps `load_step` (from 1 on) and its `time`.
    *
    * Datasets, each node of the leaf mesh having the number of its row in
    * `vertices`. Those that would be empty are not there.
@@ -49,6 +50,8 @@ namespace Friction
    * - `contact_states`: 0 open, 1 sliding, 2 sticking;
    * - `contact_sections`: where there are several, the sections that they
    *   belong to, 1 for 'Contact', 2 for 'Contact 2', ...;
+   * - `slip_origins`: in later load steps, the dim components of the tangential
+   *   displacement that friction counts slip from (length);
    * - `friction_coefficients`: with Coulomb's law, their coefficients, where
    *   these vary;
    * - `friction_bounds`: with Tresca's law, their largest tangential stress;

@@ -260,6 +260,19 @@ namespace Friction
        "Force per volume, one expression per component, separated by commas "
        "[stress/length]."},
 
+      {"Load steps",
+       "Times",
+       "",
+       text,
+       "Increasing times at which the scene is solved, one after the other, "
+       "separated by commas; constant expressions. Expressions may then use "
+       "the time t: displacements, tractions, body forces, a surface, "
+       "friction. "
+       "Between two times friction acts against the increment of slip. The "
+       "mesh "
+       "is refined at the first time, and kept then. Empty: one step, without "
+       "t."},
+
       {"Contact",
        "Boundary id",
        "-1",

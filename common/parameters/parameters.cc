@@ -488,6 +488,10 @@ namespace Friction
           if (name == "x" || name == "y" || name == "z")
             throw InputError(values.subject(path) + ": '" + name +
                              "' is a coordinate; choose another name.");
+          if (name == "t" && !values.get("Load steps/Times").empty())
+            throw InputError(values.subject(path) +
+                             ": 't' is the time of load steps; choose another "
+                             "name.");
           names.emplace_back(name, Utilities::trim(part.substr(equal + 1)));
         }
       return names;
@@ -591,6 +595,29 @@ namespace Friction
 
 
 
+    // Which increase, and may use the constants.
+    std::vector<double>
+    read_times(Values &values, const std::map<std::string, double> &constants)
+    {
+      const std::string         path  = "Load steps/Times";
+      const std::vector<double> times = read_vector(
+        values.get(path), values.subject(path), Expressions(constants, {}));
+      for (unsigned int i = 1; i < times.size(); ++i)
+        if (!(times[i] > times[i - 1]))
+          throw InputError(values.subject(path) +
+                           " is not increasing: time number " +
+                           std::to_string(i + 1) +
+                           " is not after the one before; correct it.");
+      if (times.size() > 1 && values.flag("Output/Checkpoint"))
+        throw InputError(values.subject("Output/Checkpoint") +
+                         " is set, but a run with several times cannot be "
+                         "continued; set it to false, or take a single time in "
+                         "'Load steps/Times'.");
+      return times;
+    }
+
+
+
     // 'length: mm, force: N', each at most once.
     Parameters::UnitNames
     read_units(Values &values)
@@ -633,8 +660,9 @@ namespace Friction
       Values                                           &values,
       const std::map<std::string, double>              &constants,
       std::vector<std::pair<std::string, std::string>> &definitions,
-      Parameters::Contact                              &contact)
+      Parameters                                       &parameters)
     {
+      Parameters::Contact &contact = parameters.contact;
       const std::string name      = "Contact/Friction coefficient";
       contact.varying_coefficient = values.get(name);
       const auto first_use        = std::find_if(
@@ -643,7 +671,8 @@ namespace Friction
         });
       const Expressions before(constants,
                                {definitions.begin(), first_use},
-                               values.subject("Scene/Definitions"));
+                               values.subject("Scene/Definitions"),
+                               !parameters.load_steps.times.empty());
       parse_function<3>(
         {contact.varying_coefficient}, before, values.subject(name));
       definitions.insert(first_use, {"F", contact.varying_coefficient});
@@ -892,6 +921,11 @@ namespace Friction
         }
       for (const std::string name : {"Marking", "Contact zone"})
         only_with("Refinement/" + name, "Refinement/Strategy", {"adaptive"});
+      if (split(values.get("Load steps/Times"), ',').size() > 1 &&
+          !values.any_uses("t"))
+        warnings.push_back(
+          "Warning: " + values.subject("Load steps/Times") +
+          " has several times, but nothing in the scene depends on t.");
       only_with("Output/Format", "Output/Fields", {"true", "yes"});
       only_with("Output/Principal stresses", "Output/Fields", {"true", "yes"});
       return warnings;
@@ -917,8 +951,10 @@ namespace Friction
   Expressions::Expressions(
     const std::map<std::string, double>                    &constants,
     const std::vector<std::pair<std::string, std::string>> &definitions,
-    const std::string                                      &where)
-    : named_numbers(constants)
+    const std::string                                      &where,
+    const bool                                              has_time)
+    : time_is_known(has_time)
+    , named_numbers(constants)
   {
     // In two dimensions there is no z, which is found out by those who use the
     // definition.
@@ -967,7 +1003,8 @@ namespace Friction
   {
     // There is no coordinate to depend on: no scene file has this name.
     const double value =
-      parse_function<1>({expression}, *this, where, "no_coordinate")
+      parse_function<1>(
+        {expression}, *this, where, "no_coordinate", /*with_time =*/false)
         ->value(Point<1>());
     if (!std::isfinite(value))
       throw InputError(where + ": '" + excerpt(expression) +
@@ -1030,14 +1067,16 @@ namespace Friction
       constants[name] =
         Expressions(constants, {})
           .evaluate(expression, values.subject("Scene/Constants"));
-    auto taken       = constants;
+    parameters.load_steps.times = read_times(values, constants);
+    auto taken                  = constants;
     taken["F"]       = F;
     auto definitions = read_names("Scene/Definitions", taken, values);
     if (F_varies)
-      define_varying_coefficient(
-        values, constants, definitions, parameters.contact);
-    parameters.expressions =
-      Expressions(constants, definitions, values.subject("Scene/Definitions"));
+      define_varying_coefficient(values, constants, definitions, parameters);
+    parameters.expressions = Expressions(constants,
+                                         definitions,
+                                         values.subject("Scene/Definitions"),
+                                         !parameters.load_steps.times.empty());
 
     read_regions(kind, values, parameters);
 

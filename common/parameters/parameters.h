@@ -37,11 +37,14 @@ namespace Friction
      *   use the constants and the definitions before them
      * @param where the beginning of the sentence if one of them cannot be
      *   understood, which is an InputError
+     * @param has_time whether definitions, and expressions with coordinates, may
+     *   use the time t
      */
     Expressions(
       const std::map<std::string, double>                    &constants,
       const std::vector<std::pair<std::string, std::string>> &definitions,
-      const std::string                                      &where = "");
+      const std::string                                      &where    = "",
+      const bool                                              has_time = false);
 
     /// The expression with every defined name replaced by what it stands for.
     std::string expand(const std::string &expression) const;
@@ -60,7 +63,14 @@ namespace Friction
       return named_numbers;
     }
 
+    bool
+    has_time() const
+    {
+      return time_is_known;
+    }
+
   private:
+    bool                               time_is_known = false;
     std::map<std::string, double>      named_numbers;
     std::map<std::string, std::string> expanded_definitions;
   };
@@ -185,6 +195,11 @@ namespace Friction
       std::string                body_force; ///< comma separated, or empty
     };
 
+    struct LoadSteps
+    {
+      std::vector<double> times; ///< increasing; empty: one step, no time
+    };
+
     struct Refinement
     {
       RefinementStrategy strategy            = RefinementStrategy::uniform;
@@ -251,6 +266,7 @@ namespace Friction
 
     Obstacle           obstacle;
     BoundaryConditions boundary_conditions;
+    LoadSteps          load_steps;
     Contact            contact;
 
     /// Sorted by number; none in most scenes.

@@ -49,8 +49,10 @@ namespace Friction
 
   /**
    * A function of the coordinates from one expression per component, which may
-   * use the given names. Throws InputError if one of them cannot be
-   * understood, with @p where as the beginning of the sentence.
+   * use the given names. With @p with_time and if there is a time, they may use
+   * that as well, which set_time() of the function sets. Throws InputError if
+   * one of them cannot be understood, with @p where as the beginning of the
+   * sentence.
    */
   template <int dim>
   std::shared_ptr<dealii::Function<dim>>
@@ -58,7 +60,8 @@ namespace Friction
                  const Expressions              &expressions,
                  const std::string              &where,
                  const std::string              &coordinates =
-                   dealii::FunctionParser<dim>::default_variable_names())
+                   dealii::FunctionParser<dim>::default_variable_names(),
+                 const bool with_time = true)
   {
     std::vector<std::string> expanded;
     for (const std::string &component : components)
@@ -85,7 +88,11 @@ namespace Friction
     try
       {
         const SilentErrors silence;
-        function->initialize(coordinates, expanded, expressions.constants());
+        const bool         has_time = with_time && expressions.has_time();
+        function->initialize(coordinates + (has_time ? ",t" : ""),
+                             expanded,
+                             expressions.constants(),
+                             has_time);
         // Expressions are only parsed when they are first needed.
         dealii::Vector<double> values(components.size());
         function->vector_value(dealii::Point<dim>(), values);

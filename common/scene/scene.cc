@@ -104,16 +104,25 @@ namespace Friction
   std::shared_ptr<const Function<dim>>
   Scene<dim>::make_function(const std::vector<std::string> &components,
                             const std::string              &where,
-                            const double                    smallest) const
+                            const double                    smallest,
+                            const bool                      with_time) const
   {
+    const std::shared_ptr<Function<dim>> parsed =
+      parse_function<dim>(components,
+                          parameters.expressions,
+                          where,
+                          FunctionParser<dim>::default_variable_names(),
+                          with_time);
+    if (with_time && parameters.expressions.has_time())
+      {
+        parsed->set_time(time());
+        functions_of_time.push_back(parsed);
+      }
     std::string text;
     for (const std::string &component : components)
       text += (text.empty() ? "" : ", ") + Utilities::trim(component);
-    const std::shared_ptr<const Function<dim>> function = checked_function<dim>(
-      parse_function<dim>(components, parameters.expressions, where),
-      where,
-      text,
-      smallest);
+    const std::shared_ptr<const Function<dim>> function =
+      checked_function<dim>(parsed, where, text, smallest);
     return parameters.scene.rotation_angle == 0.
       ? function
       : turned_function<dim>(function, rotation);
@@ -392,6 +401,18 @@ namespace Friction
 
 
   template <int dim>
+  void
+  Scene<dim>::begin_load_step(const unsigned int step)
+  {
+    Assert(step < n_load_steps(), ExcIndexRange(step, 0, n_load_steps()));
+    present_step = step;
+    for (const auto &function : functions_of_time)
+      function->set_time(time());
+  }
+
+
+
+  template <int dim>
   double
   Scene<dim>::body_size() const
   {
@@ -431,7 +452,9 @@ namespace Friction
             std::string::npos)
         the_materials.add_region(
           make_function({Utilities::trim(region.key.substr(word.size()))},
-                        where),
+                        where,
+                        -largest_number,
+                        /*with_time =*/false),
           region.material);
       else
         the_materials.add_region(read_material_id(region.key, where),

@@ -163,6 +163,34 @@ namespace Friction
      */
     void make_coarse_mesh(Triangulation<dim> &triangulation) const;
 
+    /**
+     * Goes to the time of a load step: from now on all functions of the scene
+     * are those at this time. A new scene is at the first one.
+     */
+    void begin_load_step(const unsigned int step);
+
+    /// The present step, counted from 0, and how many there are.
+    unsigned int
+    load_step() const
+    {
+      return present_step;
+    }
+
+    unsigned int
+    n_load_steps() const
+    {
+      return std::max<std::size_t>(1, parameters.load_steps.times.size());
+    }
+
+    /// Its time, zero if the scene says nothing of times.
+    double
+    time() const
+    {
+      return parameters.load_steps.times.empty()
+        ? 0.
+        : parameters.load_steps.times[present_step];
+    }
+
     /// As sentences about it begin.
     std::string
     subject() const
@@ -282,7 +310,11 @@ namespace Friction
     /// The mesh file, or null if the body comes from elsewhere.
     std::shared_ptr<const MeshFile<dim>> read_mesh_file() const;
 
-    Parameters parameters;
+    Parameters   parameters;
+    unsigned int present_step = 0;
+
+    /// Those that depend on the time.
+    mutable std::vector<std::shared_ptr<Function<dim>>> functions_of_time;
 
     /// What read_mesh_file() gave us, until there is a mesh.
     mutable std::shared_ptr<const MeshFile<dim>> mesh_file;
@@ -300,7 +332,8 @@ namespace Friction
     std::shared_ptr<const Function<dim>>
     make_function(const std::vector<std::string> &components,
                   const std::string              &where,
-                  const double smallest = -largest_number) const;
+                  const double                    smallest  = -largest_number,
+                  const bool                      with_time = true) const;
   };
 
 

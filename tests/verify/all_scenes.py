@@ -19,10 +19,12 @@ from verdict import COLUMNS
 def row_of(name, directory):
     """A row of the table, and whether all levels are confirmed."""
     text, rows = read_history(directory)
-    largest, confirmed = dict.fromkeys(COLUMNS, 0.), True
+    largest, confirmed, before = dict.fromkeys(COLUMNS, 0.), True, None
     for row in rows:
         level, scene = read_level(text, directory / f"verify-{row['level']:02d}.h5")
-        verdict, unknown = verify_level(level, row, scene, tolerance_of(scene, row))
+        verdict, unknown = verify_level(level, row, scene, tolerance_of(scene, row),
+                                        before)
+        before = level
         confirmed = confirmed and not verdict.complaints and not unknown
         for column in COLUMNS:
             largest[column] = max(largest[column], verdict.largest[column])

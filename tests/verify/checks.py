@@ -10,14 +10,15 @@ from scene_check import compare_with_scene
 from verdict import ROUNDING, Verdict, relative
 
 
-def verify_level(level, reported, scene, tolerance):
-    """level: a Level; scene: a SceneText. Returns a Verdict, and a list of what could
-    not be compared with the scene."""
-    verdict, found = Verdict(), Recomputed(level)
+def verify_level(level, reported, scene, tolerance, before=None):
+    """level: a Level; scene: a SceneText; before: the Level before it, if there is one.
+    Returns a Verdict, and a list of what could not be compared with the scene."""
+    verdict, found = Verdict(), Recomputed(level, displacement_before(level, before))
     exact = min(tolerance, ROUNDING)
     check_hanging_nodes(verdict, found, exact)
     check_prescribed_values(verdict, found, exact)
     check_normals(verdict, found, exact)
+    check_load_step(verdict, found, reported, scene, exact)
     check_equilibrium(verdict, found, tolerance)
     check_contact(verdict, found, tolerance)
     check_friction(verdict, found, tolerance)
@@ -109,6 +110,45 @@ def check_normals(verdict, found, exact):
             verdict.demand(
                 np.all((np.degrees(np.arccos(cosines)) <= turns + 1)[own]),
                 "a normal points away from those of the faces around its node")
+
+
+def displacement_before(level, before):
+    """The displacement at the end of the load step before at the nodes of this level, if
+    that is on the same mesh; else None."""
+    if (not level.has_slip_origins or before is None
+            or level.load_step - before.load_step != 1
+            or before.vertices.shape != level.vertices.shape):
+        return None
+    here, there = np.lexsort(level.vertices.T), np.lexsort(before.vertices.T)
+    if relative(level.vertices[here], before.vertices[there]) > ROUNDING:
+        return None
+    u = np.empty(level.vertices.shape)
+    u[here] = before.displacement[there]
+    return u
+
+
+def check_load_step(verdict, found, reported, scene, exact):
+    """The time is that of the scene, and slip counts from the tangential displacement
+    at the end of the step before, on the same mesh; in the first step from zero."""
+    level, several = found.level, len(scene.times) > 1
+    verdict.demand((level.time is not None) == several
+                   and (not several or scene.times[level.load_step - 1] == level.time
+                        == reported["time"]),
+                   "the time is not that of the scene")
+    verdict.demand(level.has_slip_origins == (level.load_step > 1)
+                   or len(level.contact_nodes) == 0,
+                   "slip counts from another step")
+    if not level.has_slip_origins:
+        return
+    verdict.demand(found.previous is not None,
+                   "the load step before is missing, or has another mesh")
+    if found.previous is None:
+        return
+    u, n = found.previous[level.contact_nodes], level.contact_normals
+    tangential = u - np.sum(u * n, axis=1)[:, None] * n
+    verdict.check("given", np.abs(tangential - level.slip_origins).max(axis=1, initial=0)
+                  / found.largest_u, exact,
+                  "slip does not count from the load step before", found.x)
 
 
 # The law.

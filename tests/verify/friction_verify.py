@@ -62,7 +62,7 @@ def tolerance_of(scene, row):
 def read_level(text, path):
     """What the run wrote of a level, and the scene in its dimension."""
     level = Level(path)
-    scene = SceneText(text, level.dim)
+    scene = SceneText(text, level.dim, level.time)
     sections = scene.sections("Obstacle")
     for contact in level.contacts:
         section = sections.get(contact.number)
@@ -85,13 +85,14 @@ def verify(directory, tolerance=None):
 
     print(f"{'level':>5} {'dofs':>9} " + " ".join(f"{c:>11}" for c in COLUMNS)
           + "  verdict")
-    refuted, complaints, remarks = [], [], []
+    refuted, complaints, remarks, before = [], [], [], None
     for row, path in files:
         level, scene = read_level(text, path)
         if level.level != row["level"]:
             raise NotReadable(f"'{path}' is that of another level.")
         verdict, unknown = verify_level(level, row, scene,
-                                        tolerance or tolerance_of(scene, row))
+                                        tolerance or tolerance_of(scene, row), before)
+        before = level
         remarks += [entry for entry in unknown if entry not in remarks]
         complaints += [f"Level {row['level']}: {c}." for c in verdict.complaints]
         if verdict.complaints:

@@ -22,7 +22,8 @@ class Recomputed:
     x, u_c       points and displacements (k x dim)
     gap, room    distance of the obstacle along the normal, before and after
     pressing     normal force, positive where the obstacle pushes
-    u_T, slip    tangential displacement (k x dim) and its length
+    u_T, slip    tangential displacement (k x dim), counted from where friction does,
+                 and its length
     r_T, drag    tangential residual (k x dim) without directions in which the
                  displacement is prescribed, whose force is a reaction; its length
     can_slide    whether a tangential direction is left free
@@ -32,8 +33,13 @@ class Recomputed:
     measure      of the boundary that belongs to the node
     """
 
-    def __init__(self, level):
-        self.level, self.u = level, level.displacement
+    def __init__(self, level, previous=None):
+        """previous: the displacement at the end of the load step before, at all nodes,
+        or None in the first one."""
+        self.level, self.u, self.previous = level, level.displacement, previous
+        self.lengths = np.linalg.norm(self.u, axis=1)
+        if previous is not None:
+            self.lengths = np.maximum(self.lengths, np.abs(previous).max())
         self.hanging = find_hanging_nodes(level)
         self.is_hanging = np.zeros(level.n_nodes, bool)
         self.is_hanging[list(self.hanging)] = True
@@ -71,7 +77,7 @@ class Recomputed:
         self.room = self.gap - u_n
         self.pressing = np.sum(r_c * normals, axis=1)
 
-        self.u_T = self.u_c - u_n[:, None] * normals
+        self.u_T = self.u_c - u_n[:, None] * normals - level.slip_origins
         self.r_T = r_c - self.pressing[:, None] * normals
         self.r_T = np.where(prescribed, 0, self.r_T)
         self.can_slide = (~prescribed).sum(axis=1) > 1
@@ -92,13 +98,14 @@ class Recomputed:
     def _find_scales(self, diagonal):
         """diagonal: traces of the diagonal blocks of A, with hanging nodes not yet
         condensed, which is good enough here."""
-        self.largest_u = np.abs(self.u).max() or 1.
+        self.largest_u = max(np.abs(self.u).max(),
+                             0 if self.previous is None
+                             else np.abs(self.previous).max()) or 1.
 
         # What is left of the force that the displacement of one node alone would cause,
         # if the others cancel it: where a body merely moves all forces are rounding
         # errors.
-        self.rounding = 1e-8 * np.max(diagonal * np.linalg.norm(self.u, axis=1)
-                                      * ~self.is_hanging)
+        self.rounding = 1e-8 * np.max(diagonal * self.lengths * ~self.is_hanging)
 
     def _find_units(self, diagonal, volumes):
         """unit, contact_unit: the force that others are compared with, at each node of
@@ -127,7 +134,7 @@ class Recomputed:
                 self.u) / face[free]
         stress = max(self.peak_pressure, (1e-3 if touches.any() else 1.)
                      * np.max(inside, initial=0))
-        rounding = 1e-8 * diagonal * np.linalg.norm(self.u, axis=1)
+        rounding = 1e-8 * diagonal * self.lengths
 
         def unit(measure, at_rounding):
             result = np.maximum(stress * measure, at_rounding)

@@ -35,6 +35,7 @@ RUNS = {
     "pin": (2, ["Refinement/Levels=2"]),
     "rough": (2, ["Refinement/Levels=1"]),
     "wall": (2, ["Refinement/Levels=3"]),
+    "mindlin": (2, ["Refinement/Maximum dofs=1000", "Load steps/Times=0, 4, 8"]),
     "crossing-rods": (3, ["Refinement/Maximum dofs=1500"]),
     "half-ball": (3, ["Refinement/Maximum dofs=300"]),
 }
@@ -78,13 +79,15 @@ class Case:
         self.row = levels[which]
         path = directory / f"verify-{self.row['level']:02d}.h5"
         self.level = Level(path)
-        self.scene = SceneText(text, self.level.dim)
+        before = directory / f"verify-{self.row['level'] - 1:02d}.h5"
+        self.before = Level(before) if before.is_file() else None
+        self.scene = SceneText(text, self.level.dim, self.level.time)
         self.tolerance = tolerance_of(self.scene, self.row)
 
     def verdict(self, change):
         level, row = copy.deepcopy(self.level), dict(self.row)
         change(level, row)
-        return verify_level(level, row, self.scene, self.tolerance)[0]
+        return verify_level(level, row, self.scene, self.tolerance, self.before)[0]
 
     def expect(self, what, change, columns=()):
         """That the change is refuted, in one of these columns at least."""
@@ -168,7 +171,7 @@ def remove_contact_node(level, _):
     keep = np.ones(len(level.contact_nodes), bool)
     keep[np.flatnonzero(level.contact_states > 0)[0]] = False
     for name in ("contact_nodes", "contact_normals", "contact_states", "contact_sections",
-                 "friction_bounds", "friction_coefficient"):
+                 "friction_bounds", "friction_coefficient", "slip_origins"):
         # One that does not vary is a number.
         if np.ndim(getattr(level, name)) > 0:
             setattr(level, name, getattr(level, name)[keep])
@@ -225,6 +228,12 @@ def change_weight(level, _):
     level.hanging_weights[0] += .01
 
 
+def move_slip_origin(level, _):
+    """Of all nodes, along the contact boundary."""
+    t = np.flip(level.contact_normals, axis=1) * [-1, 1]
+    level.slip_origins += 1e-4 * np.abs(level.displacement).max() * t
+
+
 def change_traction(level, _):
     level.tractions[0, 0] += 1e-3 * np.abs(level.tractions).max()
 
@@ -249,9 +258,10 @@ def change_mesh(level, _):
 
 
 def check_changes(cases):
-    hertz, rods, tresca, ice, patch, mean, wheel, wall = (
+    hertz, rods, tresca, ice, patch, mean, wheel, wall, mindlin = (
         cases[name] for name in ("hertz", "crossing-rods", "tresca", "ice", "stick-slip",
-                                 "incompressible", "wheel", "wall"))
+                                 "incompressible", "wheel", "wall",
+                                 "mindlin"))
     deep = {case.name: 1e-4 * np.abs(case.level.displacement).max()
             for case in cases.values()}
     for case in (hertz, rods, tresca):
@@ -307,6 +317,9 @@ def check_changes(cases):
     patch.expect("a traction", change_traction, ["equilibrium"])
     wheel.expect("a cell of another region", change_region, ["equilibrium"])
     wheel.expect("a cell of another region, given", change_region, ["given"])
+    mindlin.expect("slip from elsewhere", move_slip_origin, ["slip", "states"])
+    mindlin.expect("slip from elsewhere, given", move_slip_origin, ["given"])
+    mindlin.expect("another time", scale("time", 1.5), ["given"])
     mean.expect("a body force", change_body_force, ["equilibrium"])
     mean.expect("pointwise volumetric strain",
                 scale_materials(2, 0.),

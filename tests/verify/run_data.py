@@ -41,6 +41,9 @@ class Level:
                         for name in OF_CONTACT:
                             setattr(contact, name, file.attrs[f"{name}_{number}"])
                         self.contacts.append(contact)
+                # With several load steps.
+                self.load_step = int(file.attrs.get("load_step", 1))
+                self.time = file.attrs.get("time")
                 data = {name: item[()] for name, item in file.items()}
             self._take(data)
         except (OSError, KeyError, ValueError, IndexError) as error:
@@ -88,6 +91,10 @@ class Level:
         self.contact_nodes = nodes("contact_nodes", 1)
         self.contact_normals = rows("contact_normals", dim)
         self.contact_states = rows("contact_states", 1, int)
+        # In later load steps, what slip counts from.
+        self.has_slip_origins = "slip_origins" in data
+        self.slip_origins = (rows("slip_origins", dim) if self.has_slip_origins
+                             else np.zeros((len(self.contact_nodes), dim)))
         # Where it varies somewhere, one per contact node.
         self.friction_coefficient = data.get("friction_coefficients",
                                              self.friction_coefficient)
@@ -116,6 +123,7 @@ class Level:
                 or len(self.contact_normals) != k or len(self.contact_states) != k
                 or len(self.contact_sections) != k
                 or not set(self.contact_sections) <= {c.number for c in self.contacts}
+                or len(self.slip_origins) != k
                 or np.shape(self.friction_coefficient) not in ((), (k,))
                 or (any(c.friction_law == "Tresca" for c in self.contacts) and k > 0
                     and np.shape(self.friction_bounds) != (k,))

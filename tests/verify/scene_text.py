@@ -12,7 +12,8 @@ class SceneText:
     """What the parameters in history.h5 say. Raises NotUnderstood where that is beyond
     this program."""
 
-    def __init__(self, text, dim):
+    def __init__(self, text, dim, time=None):
+        """time: of a load step, if there are several."""
         self.dim, self.entries, section = dim, {}, ""
         for line in text.splitlines():
             line = line.split("#")[0].strip()
@@ -35,6 +36,10 @@ class SceneText:
                 self.names[name.strip()] = self.evaluate(expression)
             except NotUnderstood:
                 pass  # and what needs it will not be understood, either
+        times = split(self.entries.get("Load steps/Times", ""), ",")
+        self.times = [float(self.evaluate(part)) for part in times]
+        if times:
+            self.names["t"] = self.times[0] if time is None else time
         for part in split(self["Scene/Definitions"], ";"):
             name, _, expression = part.partition("=")
             self.names[name.strip()] = expression

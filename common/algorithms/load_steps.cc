@@ -1,0 +1,76 @@
+#include <common/algorithms/load_steps.h>
+#include <common/parallel/reductions.h>
+
+#include <array>
+
+namespace Friction
+{
+  template <int dim>
+  void
+  LoadSteps<dim>::begin_next(Scene<dim>          &scene,
+                             Discretization<dim> &discretization,
+                             VectorType          &displacement,
+                             VectorType          &tractions)
+  {
+    const double     time             = scene.time();
+    const VectorType old_displacement = displacement;
+    const VectorType old_tractions    = tractions;
+    const VectorType old_prescribed =
+      discretization.constraints().prescribed_values();
+    scene.begin_load_step(scene.load_step() + 1);
+    discretization.set_up();
+    discretization.set_slip_origin(old_displacement);
+
+    const bool   can_go_on = last_displacement.size() == displacement.size();
+    const double factor    = can_go_on
+         ? growth(old_prescribed,
+               discretization.constraints().prescribed_values(),
+               (scene.time() - time) / (time - last_time),
+               discretization.constraints().communicator())
+         : 0.;
+    const auto   go_on =
+      [&](VectorType &v, const VectorType &now, VectorType &last) {
+        v = discretization.vector();
+        v.copy_locally_owned_data_from(now);
+        if (can_go_on)
+          for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
+            v.local_element(i) +=
+              factor * (now.local_element(i) - last.local_element(i));
+        last = now;
+      };
+    go_on(displacement, old_displacement, last_displacement);
+    go_on(tractions, old_tractions, last_tractions);
+    last_prescribed = old_prescribed;
+    last_time       = time;
+  }
+
+
+
+  // The multiple of the last change of prescribed values that comes closest to
+  // the next one.
+  template <int dim>
+  double
+  LoadSteps<dim>::growth(const VectorType &prescribed,
+                         const VectorType &next_prescribed,
+                         const double      time_ratio,
+                         const MPI_Comm    communicator) const
+  {
+    double product = 0, square = 0;
+    for (unsigned int i = 0; i < prescribed.locally_owned_size(); ++i)
+      {
+        const double last =
+          prescribed.local_element(i) - last_prescribed.local_element(i);
+        product += last *
+          (next_prescribed.local_element(i) - prescribed.local_element(i));
+        square += last * last;
+      }
+    const auto sums = sum_over_processes(
+      std::array<double, 2>{{product, square}}, communicator);
+    return sums[1] > 0 ? sums[0] / sums[1] : time_ratio;
+  }
+
+
+
+  template class LoadSteps<2>;
+  template class LoadSteps<3>;
+} // namespace Friction

@@ -1,0 +1,48 @@
+#ifndef friction_algorithms_load_steps_h
+#define friction_algorithms_load_steps_h
+
+#include <common/discretization/discretization.h>
+#include <common/scene/scene.h>
+
+namespace Friction
+{
+  /**
+   * Goes from one load step of a scene to the next. What a step leaves to the
+   * one after it is its mesh, its displacement, from which friction counts slip
+   * from then on, and a good guess.
+   */
+  template <int dim>
+  class LoadSteps
+  {
+  public:
+    /**
+     * To be called when a step is solved and is not the last one: sets the time
+     * of the scene, and the discretisation up anew on its mesh; assemble() has
+     * to follow.
+     *
+     * On call the vectors are displacement and contact tractions of the step
+     * that has ended, on return guesses for the next one: what has been found,
+     * and the last change on this mesh once more, as many times as prescribed
+     * displacements change once more, or if none did, times. That may be a
+     * negative number, where loads are taken back. After the first step there
+     * is no change to repeat. Collective.
+     */
+    void begin_next(Scene<dim>          &scene,
+                    Discretization<dim> &discretization,
+                    VectorType          &displacement,
+                    VectorType          &tractions);
+
+  private:
+    // Of the step before the one that has ended last; empty before there are
+    // two.
+    VectorType last_displacement, last_tractions, last_prescribed;
+    double     last_time = 0.;
+
+    double growth(const VectorType &prescribed,
+                  const VectorType &next_prescribed,
+                  const double      time_ratio,
+                  const MPI_Comm    communicator) const;
+  };
+} // namespace Friction
+
+#endif
