@@ -54,7 +54,7 @@ namespace Friction
      * Finds the lines. Collective.
      * @param A             kept by reference.
      * @param nodes         those to be relaxed.
-     * @param is_held       components that keep their values; kept.
+     * @param is_held       components that keep their values.
      * @param communicator  of all processes that have rows of the matrix.
      */
     LineRelaxation(const NodeBlockMatrix<dim> &A,

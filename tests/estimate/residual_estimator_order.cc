@@ -8,6 +8,7 @@
 
 #include <common/estimate/residual_estimator.h>
 
+#include <deal.II/base/function.h>
 #include <deal.II/base/quadrature_lib.h>
 
 #include <deal.II/distributed/tria.h>
@@ -313,6 +314,71 @@ namespace
 
 
 
+  // The first component is the square of the distance: nearly the solution for
+  // which the constant of the bound is the least possible. All of the boundary
+  // is held.
+  template <int dim>
+  class Square : public Function<dim>
+  {
+  public:
+    Square()
+      : Function<dim>(dim)
+    {}
+
+    double
+    value(const Point<dim> &p, const unsigned int c) const override
+    {
+      return c == 0 ? p.square() : 0.;
+    }
+  };
+
+
+
+  template <int dim>
+  void
+  test_constant()
+  {
+    constexpr unsigned int                    n_refinements = dim == 2 ? 5 : 4;
+    parallel::distributed::Triangulation<dim> triangulation(MPI_COMM_WORLD);
+    GridGenerator::hyper_cube(triangulation, 0., 1., true);
+    triangulation.refine_global(n_refinements);
+    const FESystem<dim> fe(FE_Q<dim>(1), dim);
+    DoFHandler<dim>     dof_handler(triangulation);
+    dof_handler.distribute_dofs(fe);
+    const MappingQ1<dim>                       mapping;
+    LinearAlgebra::distributed::Vector<double> u;
+    u.reinit(dof_handler.locally_owned_dofs(), MPI_COMM_WORLD);
+    VectorTools::interpolate(mapping, dof_handler, Square<dim>(), u);
+
+    for (const double nu : {0., 0.3, 0.4999})
+      {
+        const double mu = 1., lambda = 2. * mu * nu / (1. - 2. * nu);
+        // It is $-\mu\Delta u-(\lambda+\mu)\nabla\operatorname{div}u$.
+        std::vector<double> force(dim);
+        force[0] = -2. * dim * mu - 2. * (lambda + mu);
+        const Functions::ConstantFunction<dim> body_force(force);
+        EstimatorProblem<dim>                  problem(material_of(lambda, mu));
+        problem.body_force = &body_force;
+        for (unsigned int id = 0; id < 2 * dim; ++id)
+          problem.dirichlet[id] = ComponentMask(dim, true);
+        const ErrorEstimate e =
+          estimate_error(mapping, dof_handler, problem, u, EstimatorContact());
+
+        // On a cell of width h the interpolant lacks $\sum_dx_d(x_d-h)$ in the
+        // first component, with derivatives $2x_d-h$ whose squares are $h^2/3$
+        // in the mean.
+        const double h     = std::pow(.5, n_refinements);
+        const double error = h * std::sqrt((lambda + (dim + 1) * mu) / 3.);
+        std::cout << dim << "D, x^2+..., Poisson ratio " << std::defaultfloat
+                  << std::setprecision(4) << nu
+                  << ": bound from below over the error " << std::fixed
+                  << std::setprecision(2) << e.lower_bound / error
+                  << (e.lower_bound < error ? "" : ", TOO LARGE") << std::endl;
+      }
+  }
+
+
+
   // Symmetric about $x=1/2$: the first component is odd, the others are even.
   template <int dim>
   class Symmetric : public Function<dim>
@@ -395,6 +461,8 @@ main(int argc, char **argv)
   Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_order<2>(5);
   test_order<3>(3);
+  test_constant<2>();
+  test_constant<3>();
   test_stretched<2>();
   test_stretched<3>();
   test_symmetry<2>();
