@@ -220,7 +220,7 @@ namespace
     const RandomProblem<dim> problem(
       is_stretched ? stretched_parameters<dim>()
                    : block_parameters<dim>(FrictionLaw::coulomb, .4),
-      dim == 2 ? (is_stretched ? 3 : 4) : 2,
+      dim == 2 ? (is_stretched ? 2 : 4) : 2,
       dim == 2 ? .45 : .5,
       random);
     for (const std::string kind :
