@@ -162,7 +162,8 @@ namespace StepFriction2d
       {
         level = output.load_checkpoint(*triangulation);
         for (const LevelRecord &record : output.levels())
-          stop.add_level(record.least_error, record.dofs, record.contraction);
+          stop.add_level(
+            record.error_at_least, record.dofs, record.contraction);
       }
     else
       refine_uniformly(*triangulation,
@@ -427,7 +428,7 @@ namespace StepFriction2d
     LevelRecords<dim> records =
       make_level_records(level, discretization, displacement, state, report);
     records.level.estimated_error = estimate.total;
-    records.level.least_error     = estimate.lower_bound;
+    records.level.error_at_least  = estimate.lower_bound;
     records.level.setup_seconds   = setup_seconds;
     records.level.solve_seconds   = solve_seconds;
     if (output.wants_forces())

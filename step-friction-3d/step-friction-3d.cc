@@ -57,7 +57,8 @@ namespace StepFriction3d
         Checkpoints::load_vectors(nest.discretization().dof_handler(),
                                   nest.guess());
         for (const LevelRecord &record : output.levels())
-          nest.add_level(record.least_error, record.dofs, record.contraction);
+          nest.add_level(
+            record.error_at_least, record.dofs, record.contraction);
       }
     output.check_start(nest.discretization());
   }

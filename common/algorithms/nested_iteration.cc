@@ -144,11 +144,11 @@ namespace Friction
 
   template <int dim>
   void
-  NestedIteration<dim>::add_level(const double least_error,
+  NestedIteration<dim>::add_level(const double error_at_least,
                                   const dealii::types::global_dof_index n_dofs,
                                   const double contraction)
   {
-    stop.add_level(least_error, n_dofs, contraction);
+    stop.add_level(error_at_least, n_dofs, contraction);
   }
 
 

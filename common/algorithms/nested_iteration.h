@@ -67,7 +67,7 @@ namespace Friction
 
     /** For the next mesh: what is known of the meshes of a run that is
      * continued, see DiscretizationStop::add_level(). */
-    void add_level(const double                          least_error,
+    void add_level(const double                          error_at_least,
                    const dealii::types::global_dof_index n_dofs,
                    const double                          contraction);
 

@@ -112,10 +112,10 @@ namespace Friction
              "estimated error of the displacement in the energy norm",
              Q::energy_norm,
              &R::estimated_error);
-      column("least_error",
+      column("error_at_least",
              "what that error is at least, as far as the mesh can tell",
              Q::energy_norm,
-             &R::least_error);
+             &R::error_at_least);
       column("certificate",
              "largest violation of the discrete law, of the peak pressure",
              Q::number,

@@ -90,7 +90,7 @@ namespace Friction
     /// Estimated error in the energy norm, and what it is at least: see
     /// ErrorEstimate.
     double estimated_error = 0.;
-    double least_error     = 0.;
+    double error_at_least  = 0.;
 
     /// Largest scaled residual of the discrete contact and friction laws.
     double certificate = 0.;
@@ -113,7 +113,7 @@ namespace Friction
       archive &max_pressure_error               &contact_half_width_error;
       archive &stick_half_width_error           &pressure_resolution;
       archive &contact_resolution               &stick_resolution;
-      archive &estimated_error &least_error     &certificate;
+      archive &estimated_error &error_at_least  &certificate;
       archive &setup_seconds                    &solve_seconds;
     }
   };

@@ -279,7 +279,7 @@ namespace Friction
                                                    nest.state(),
                                                    nest.report());
     records.level.estimated_error             = estimate.total;
-    records.level.least_error                 = estimate.lower_bound;
+    records.level.error_at_least              = estimate.lower_bound;
     records.level.setup_seconds               = nest.setup_seconds();
     records.level.solve_seconds               = nest.solve_seconds();
     if (wants_forces())
