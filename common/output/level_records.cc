@@ -57,13 +57,8 @@ namespace Friction
 
       // Of each node a phase, which is zero where there can be no contact, and
       // a pressure.
-      enum Phase
-      {
-        open = 1,
-        slides,
-        sticks
-      };
-      VectorType values = discretization.vector();
+      constexpr double open = 1, slides = 2, sticks = 3;
+      VectorType       values = discretization.vector();
       for (unsigned int p = 0; p < contact.size(); ++p)
         {
           const unsigned int i    = dim * contact[p].node;

@@ -102,7 +102,7 @@ namespace
 
 
   template <int dim>
-  const ForceOnBody<dim> &
+  ForceOnBody<dim>
   named(const ForceBalance<dim> &balance, const std::string &name)
   {
     return *std::find_if(balance.forces.begin(),
@@ -253,8 +253,9 @@ main(int argc, char **argv)
   test_clamped<3>();
   test_renamed();
 
-  const Entries wall = {
-    "Obstacle 2/Kind=plane", "Obstacle 2/Point=1, 0", "Obstacle 2/Normal=1, 0",
+  const Entries wall = {"Obstacle 2/Kind=plane",
+                        "Obstacle 2/Point=1, 0",
+                        "Obstacle 2/Normal=1, 0",
                         "Boundary conditions/Displacement=3: 0, -0.02"};
   test_refused("a corner is refused",
                wall + Entries{"Contact 2/Boundary id=1"},

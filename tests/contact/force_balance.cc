@@ -46,7 +46,7 @@ namespace
 
 
   template <int dim>
-  const ForceOnBody<dim> &
+  ForceOnBody<dim>
   find(const ForceBalance<dim> &balance, const std::string &name)
   {
     for (const ForceOnBody<dim> &force : balance.forces)
