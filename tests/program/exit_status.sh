@@ -20,7 +20,12 @@ expect()
   wanted=$2
   n_messages=$3
   shift 3
-  timeout 60 "$mpiexec" "$numproc_flag" "$n" "$program" "$@" >"$messages" 2>&1
+  # One process as users start it, which is quicker, too.
+  if [ "$n" -eq 1 ]; then
+    timeout 60 "$program" "$@" >"$messages" 2>&1
+  else
+    timeout 60 "$mpiexec" "$numproc_flag" "$n" "$program" "$@" >"$messages" 2>&1
+  fi
   status=$?
   if [ $status -eq "$wanted" ] &&
     [ "$(grep -c '^exit_status: ' "$messages")" -eq "$n_messages" ]; then
