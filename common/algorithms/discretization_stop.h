@@ -13,10 +13,10 @@ namespace Friction
    *
    * The error of the discretisation is taken to be the least that the residual
    * estimator allows for, ErrorEstimate::lower_bound, and not its estimate,
-   * which may be many times the error: for squares 6.9 times
-   * with a Poisson ratio of 0.3, 300 times with 0.4999, and 350 times where
-   * cells are a hundred times as long as wide. Where the estimate is better
-   * than that, the iteration goes on a little longer.
+   * which may be many times the error: for squares 6.9 times with a Poisson
+   * ratio of 0.3, 300 times with 0.4999, and 350 times where cells are a
+   * hundred times as long as wide. Where the estimate is better than that, the
+   * iteration goes on a little longer.
    *
    * It is not known before the mesh has been solved. So that of the mesh before
    * is taken, scaled by the rate at which errors fall with the number of
