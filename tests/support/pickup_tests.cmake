@@ -7,6 +7,7 @@
 #            input
 #   studies  figures, charts and benchmarks, on tiny meshes
 #   pages    prose, commands of pages, pages in a browser
+#   shipped  with sanitizers only: every scene as it is shipped
 #
 # deal.II itself sets a property LABEL, which ctest does not know.
 
@@ -23,7 +24,7 @@ set(FRICTION_MPI_ENVIRONMENT
   PMIX_MCA_mca_base_suppress_deprecated_warning=1
   PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe)
 
-# label_test(name LABEL quick|full|studies|pages|build [PROCESSES n]): a test that was
+# label_test(name LABEL quick|full|studies|pages|shipped|build [PROCESSES n]): a test that was
 # added already. Its folder is the part of its name before the first slash. On more
 # than two processes it is never quick.
 function(label_test name)

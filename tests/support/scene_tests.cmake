@@ -42,5 +42,23 @@ function(add_scene_tests PROGRAM BOUND)
           FIXTURES_REQUIRED ${PROGRAM}.${_name})
       endif()
     endforeach()
+
+    # Under sanitizers, which end a program as soon as they find anything, besides as
+    # it is shipped.
+    if(FRICTION_SANITIZERS)
+      foreach(_n 1 2)
+        set(_test ${PROGRAM}/${_name}.shipped)
+        set(_launch)
+        if(_n GREATER 1)
+          set(_test ${_test}.mpirun=${_n})
+          set(_launch ${DEAL_II_MPIEXEC} ${DEAL_II_MPIEXEC_NUMPROC_FLAG} ${_n})
+        endif()
+        add_test(NAME ${_test}
+          COMMAND ${_launch} $<TARGET_FILE:${PROGRAM}> ${_scene}
+            Output/Directory=${CMAKE_CURRENT_BINARY_DIR}/${_name}-shipped-${_n})
+        label_test(${_test} LABEL shipped PROCESSES ${_n})
+        set_tests_properties(${_test} PROPERTIES TIMEOUT 3600)
+      endforeach()
+    endif()
   endforeach()
 endfunction()
