@@ -100,9 +100,6 @@ namespace Friction
       {
         add_owned(v, 1., leaf_start);
         levels.relax_leaf(v, r, {leaf_sweeps, true});
-        // The problem of a long line is so badly conditioned that its rounding
-        // would leave what is truncated.
-        levels.matrices().current_truncation().apply(v.begin());
       }
   }
 

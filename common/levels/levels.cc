@@ -136,6 +136,9 @@ namespace Friction
                    v.begin(),
                    problem.stiffness.ghosts(),
                    defect != nullptr ? defect->begin() : nullptr);
+    // The problem of a long line is so badly conditioned that its rounding
+    // would leave what is truncated.
+    level_matrices.current_truncation().apply(v.begin());
   }
 
 

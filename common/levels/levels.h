@@ -138,8 +138,7 @@ namespace Friction
 
     /**
      * Sweeps over the lines of the leaf mesh for $T(A+\omega'')T\,v=r$.
-     * @param v       truncated. Its ghosts need not be valid, and are on
-     *                return.
+     * @param v       truncated. Its ghosts need not be valid.
      * @param r       truncated.
      * @param defect  if not null, the truncated residual on return.
      */
