@@ -318,23 +318,6 @@ namespace
   // which the constant of the bound is the least possible. All of the boundary
   // is held.
   template <int dim>
-  class Square : public Function<dim>
-  {
-  public:
-    Square()
-      : Function<dim>(dim)
-    {}
-
-    double
-    value(const Point<dim> &p, const unsigned int c) const override
-    {
-      return c == 0 ? p.square() : 0.;
-    }
-  };
-
-
-
-  template <int dim>
   void
   test_constant()
   {
@@ -348,7 +331,9 @@ namespace
     const MappingQ1<dim>                       mapping;
     LinearAlgebra::distributed::Vector<double> u;
     u.reinit(dof_handler.locally_owned_dofs(), MPI_COMM_WORLD);
-    VectorTools::interpolate(mapping, dof_handler, Square<dim>(), u);
+    const VectorFunctionFromScalarFunctionObject<dim> square(
+      [](const Point<dim> &p) { return p.square(); }, 0, dim);
+    VectorTools::interpolate(mapping, dof_handler, square, u);
 
     for (const double nu : {0., 0.3, 0.4999})
       {
