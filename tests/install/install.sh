@@ -25,10 +25,14 @@ fail() {
 mv "$work/first" "$work/prefix"
 
 cp -r "$sources" "$work/program"
+# Besides, a file with every header that is installed: each finds what it includes.
+(cd "$work/prefix/include/friction" && find common -name '*.h' ! -name precompiled.h | sort |
+  sed 's/.*/#include <&>/') >"$work/program/headers.cc"
+echo 'target_sources(block PRIVATE headers.cc)' >>"$work/program/CMakeLists.txt"
 {
   "$cmake" -S "$work/program" -B "$work/build" \
     -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_CXX_COMPILER="$compiler" &&
-    "$cmake" --build "$work/build"
+    "$cmake" --build "$work/build" -j 2
 } >"$work/log" 2>&1 || { cat "$work/log"; fail "the program cannot be built"; }
 grep -q "warning:" "$work/log" && { cat "$work/log"; fail "there are warnings"; }
 
@@ -36,13 +40,15 @@ scene=$work/prefix/share/friction/step-friction-2d/scenes/block.prm
 outside=$("$work/build/block" "$scene") || fail "the program does not run"
 echo "$outside"
 
-step=$work/prefix/bin/step-friction-2d
-said=$("$step" --version) || fail "the installed step program does not run"
-echo "$said"
-case $said in
-"step-friction-2d $version "*) ;;
-*) fail "--version does not begin with step-friction-2d $version" ;;
-esac
+for name in step-friction-3d step-friction-2d; do
+  step=$work/prefix/bin/$name
+  said=$("$step" --version) || fail "the installed $name does not run"
+  echo "$said"
+  case $said in
+  "$name $version "*) ;;
+  *) fail "--version does not begin with $name $version" ;;
+  esac
+done
 
 # The fourth and fifth column of the only row: contact, sticky.
 row=$(cd "$work" && "$step" "$scene" "Refinement/Initial refinements=4" \
@@ -65,7 +71,7 @@ status=$?
 echo "$said" | tail -1 | sed "s|$work/||"
 case $status,$said in
 0,*) [ -s "$work/run/picture.png" ] || fail "there is no picture" ;;
-2,*"has no module"*) exit 0 ;;
+2,*"has no module"*) echo "No picture and no sweep: there is no matplotlib." && exit 0 ;;
 *) fail "the installed program does not draw the run" ;;
 esac
 (cd "$work" && "$work/prefix/bin/friction-plot" sweep "$scene" Refinement/Levels=0 \
