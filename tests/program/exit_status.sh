@@ -8,9 +8,6 @@ scene=$2
 n=$3
 mpiexec=$4
 numproc_flag=$5
-launch="$mpiexec $numproc_flag $n"
-# One process as users start it, which is quicker, too.
-[ "$n" -eq 1 ] && launch=
 failures=0
 messages=$(mktemp) || exit 1
 trap 'rm -f "$messages"' EXIT
@@ -23,7 +20,12 @@ expect()
   wanted=$2
   n_messages=$3
   shift 3
-  timeout 60 $launch "$program" "$@" >"$messages" 2>&1
+  # One process as users start it, which is quicker, too.
+  if [ "$n" -eq 1 ]; then
+    timeout 60 "$program" "$@" >"$messages" 2>&1
+  else
+    timeout 60 "$mpiexec" "$numproc_flag" "$n" "$program" "$@" >"$messages" 2>&1
+  fi
   status=$?
   if [ $status -eq "$wanted" ] &&
     [ "$(grep -c '^exit_status: ' "$messages")" -eq "$n_messages" ]; then

@@ -75,6 +75,11 @@ function(pickup_tests)
   set(_found)
   get_property(_tests DIRECTORY PROPERTY TESTS)
   foreach(_test ${_tests})
+    # Others of this folder have theirs.
+    get_test_property(${_test} LABELS _labels)
+    if(_labels)
+      continue()
+    endif()
     # Since 9.5 deal.II builds a program that several tests need in a test of its own.
     if(_test MATCHES "^test_dependency/")
       label_test(${_test} LABEL build)
