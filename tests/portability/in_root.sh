@@ -14,18 +14,10 @@ because() {
   reason="$reason${reason:+; }$*"
 }
 
-# The fenced block of README.md after the line that names it.
-readme_command() {
-  awk -v name="<!-- $1 command -->" '
-    $0 == name {wanted = 1; next}
-    wanted && /^```/ {if (inside) exit; inside = 1; next}
-    inside' README.md
-}
-
 # Warnings of our sources, each once, in what a build has printed.
 n_warnings() {
   cat "$@" |
-    grep -E '(/friction/|^)(common|step-friction-..|tests)/[^ ]*: warning:|^cc1plus: warning|^CMake Warning' |
+    grep -E '(/friction/|^)(common|step-friction-..|tests)/[^ ]*: warning:|^(cc1plus|clang|g\+\+|ld|mold|/usr/bin/)[^ ]*: warning|^CMake Warning' |
     sort -u | tee warnings.log | wc -l
 }
 
@@ -83,7 +75,7 @@ if [ -n "$tag" ]; then
   exit 0
 fi
 
-command=$(readme_command run | with_compiler)
+command=$(.ci/readme-command run | with_compiler)
 configured=no
 bash -euo pipefail -c "$command" >run.log 2>&1 && configured=yes ||
   because "$(grep -m1 'rror' run.log | tr '|' ' ')"
