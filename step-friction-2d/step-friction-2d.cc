@@ -126,8 +126,9 @@ namespace StepFriction2d
   // Multigrid on locally refined meshes wants the levels to have degrees of
   // freedom of their own, hence <code>construct_multigrid_hierarchy</code>. The
   // other one, <code>limit_level_difference_at_vertices</code>, keeps cells
-  // that share but a vertex within one level of each other. Our level matrices
-  // rely on it: it makes each hanging node belong to exactly one level.
+  // that share but a vertex within one level of each other. Otherwise a cell of
+  // level 2 could meet one of level 4 there, and no level would have both nodes
+  // of a block of the matrix.
   template <int dim>
   ContactProblem<dim>::ContactProblem(const Parameters &parameters)
     : parameters(parameters)
@@ -319,8 +320,8 @@ namespace StepFriction2d
     const auto step_control = make_step_control(functional, settings);
 
     // Put together, they are one step from a smoothed iterate to the next.
-    // Parts 4 and 5 are classes with several kinds; any other can be exchanged
-    // for a class with the same functions.
+    // Parts 4 and 5 are base classes with several kinds; the others are one
+    // class each.
     MonotoneMultigrid<dim> iteration(functional,
                                      smoother,
                                      linearization,
@@ -451,7 +452,8 @@ namespace StepFriction2d
 
   // @sect4{ContactProblem::run}
 
-  // The loop over levels. It ends when the mesh is fine enough, or when a level
+  // The loop over levels. It ends after <code>Refinement/Levels</code>
+  // refinements or with <code>Refinement/Maximum dofs</code>, or when a level
   // could not be solved; its certificate says which law is violated.
   template <int dim>
   bool
@@ -466,7 +468,8 @@ namespace StepFriction2d
         // computed on the last level, too, to know the error of what has been
         // found. With <code>Inner tolerance = discretisation</code> the next
         // solution will be stopped when its own error is small compared with
-        // that of the mesh, and this is where we learn about the latter.
+        // that of the mesh, and this is where we learn about the latter. (In
+        // later load steps, see below, the mesh is that of the first.)
         const bool last = scene.load_step() > 0 ||
           level >= parameters.refinement.levels ||
           discretization.dof_handler().n_dofs() >=

@@ -37,8 +37,9 @@ namespace StepFriction3d
   //
   // The discretisation then finds the nodes that may touch
   // (<code>ContactBoundary</code>). Several bilinear faces meet in a node,
-  // whose normals all differ, and none of them is the right one; but the
-  // manifold that has put the vertex there knows it: on the mantle of a
+  // whose normals all differ, and none of them is the right one. Either it is
+  // that of the obstacle, or, with <code>Contact/Contact normal = body</code>,
+  // that of the manifold which has put the vertex there: on the mantle of a
   // cylinder it is exactly radial. The two tangents may be turned in their
   // plane at will, since
   // $|u_T|$ is the same in any frame. Where one of them is prescribed it comes
@@ -199,12 +200,12 @@ namespace StepFriction3d
       parameters, nest.scene(), std::cout, version(), MPI_COMM_WORLD);
 
     begin(nest, output, start);
-    for (ErrorEstimate estimate = solve(nest, output);
-         nest.report().converged && !nest.is_last() && nest.mark(estimate);
-         estimate = solve(nest, output))
+    ErrorEstimate estimate = solve(nest, output);
+    while (nest.report().converged && !nest.is_last() && nest.mark(estimate))
       {
         nest.refine();
         output.save_checkpoint(nest);
+        estimate = solve(nest, output);
       }
     while (nest.report().converged && nest.begin_next_load_step())
       {

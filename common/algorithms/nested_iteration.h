@@ -130,7 +130,8 @@ namespace Friction
       return the_discretization;
     }
 
-    /** The number of refinements of the first mesh. */
+    /** The number of refinements of the first mesh and of load steps since
+     * then. */
     unsigned int
     level() const
     {

@@ -15,17 +15,17 @@ namespace Friction
    * nowhere, by whatever else may succeed:
    *
    * 1. the algorithm of the settings, by default Algorithm 3;
-   * 2. the same algorithm with shorter steps, if phases were still changing;
-   *    otherwise, or if that fails, with AlgebraicCorrection: if the coarse
-   *    levels were the trouble, for example because cells are short in two of
-   *    three directions;
+   * 2. with Coulomb's friction the same algorithm with shorter steps, if phases
+   *    were still changing; if they were not, or have stopped to, with
+   *    AlgebraicCorrection, since the coarse levels may be the trouble, for
+   *    example because cells are short in two of three directions;
    * 3. Algorithm 2 with half of each change of the normal forces, and with
    *    mixing, see MixedFixedPoint: if Coulomb's law was the trouble, because
    *    there is much friction. Each of its problems, with given normal forces,
    *    is convex, which makes it slow and reliable;
    * 4. Algorithm 2 with a fiftieth of each change, and without mixing until the
    *    normal forces have nearly settled: with so much friction that each
-   * change of them changes phases, too;
+   *    change of them changes phases, too;
    * 5. continuation: first the problem with less friction, and its solution as
    *    initial guess for more, until all friction is there.
    *
@@ -41,8 +41,8 @@ namespace Friction
    * it is, by SolverReport::converged.
    *
    * All attempts together take SolverSettings::total_cycles cycles at most, and
-   * each of them half of those that are left, so that a problem without hope
-   * comes to an end.
+   * each of them half of those that are left and the last one all, so that a
+   * problem without hope comes to an end.
    */
   template <int dim>
   class SafeguardedSolver

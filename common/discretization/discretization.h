@@ -48,9 +48,14 @@ namespace Friction
    * - the nodes that may get into contact, ContactBoundary,
    * - stiffness and loads, assembled.
    *
-   * Solvers see of it what problem() refers to:
+   * Solvers see of it what problem() refers to, with parameters from
+   * read_parameters():
    * @code
-   *   Discretization<dim> discretization(scene, mesh);
+   *   Scene<dim> scene(parameters);
+   *   const auto mesh = make_triangulation<dim>();
+   *   scene.make_coarse_mesh(*mesh);
+   *
+   *   Discretization<dim> discretization(scene, *mesh);
    *   discretization.set_up();
    *   discretization.assemble(elasticity<dim>(scene.materials()));
    *
@@ -58,8 +63,9 @@ namespace Friction
    *   VectorType         no_tractions(u);
    *   ContactState       state = make_initial_guess(discretization, u,
    *                                                 no_tractions);
-   *   ContactSolver<dim> solver(discretization, settings);
+   *   ContactSolver<dim> solver(discretization, parameters.solver);
    *   SolverReport       report = solver.solve(u, state);
+   *   discretization.interpolate_hanging_nodes(u);
    * @endcode
    *
    * Scene and mesh must outlive the object. After the mesh has been refined,

@@ -28,7 +28,7 @@ namespace Friction
    * the linearised energy lowers the true one only where friction is piecewise
    * linear, in two.
    *
-   * When to stop is not decided here, see MultigridLoop.
+   * When to stop is not decided here, see run_multigrid().
    */
   template <int dim>
   class MonotoneMultigrid
