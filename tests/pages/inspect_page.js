@@ -121,8 +121,14 @@ function inspectNextFrame() {
   requestAnimationFrame(() => requestAnimationFrame(inspect));
 }
 
+function hasRawText() {
+  const offences = [];
+  checkText(offences);
+  return offences.length > 0;
+}
+
 // MathJax comes after the page, and is through when its queue is empty, or, on a
-// machine that is busy, has not yet put its work there; it gets three more seconds
+// machine that is busy, has not yet put its work there; it gets eight more seconds
 // as long as there is anything left to set.
 const waiting = document.querySelector('script[src*="MathJax.js"]');
 (function wait(turns) {
@@ -130,7 +136,7 @@ const waiting = document.querySelector('script[src*="MathJax.js"]');
     inspectNextFrame();
   else if (window.MathJax && MathJax.isReady)
     MathJax.Hub.Queue(() =>
-      turns > 270 && /\\[([]/.test(document.body.innerText)
+      turns > 220 && hasRawText()
         ? setTimeout(wait, 100, turns - 1)
         : inspectNextFrame());
   else if (turns === 0)
