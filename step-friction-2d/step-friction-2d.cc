@@ -17,6 +17,7 @@
 // build on one another.
 #include <common/algorithms/contact_solver.h>
 #include <common/algorithms/discretization_stop.h>
+#include <common/algorithms/force_control.h>
 #include <common/algorithms/initial_guess.h>
 #include <common/algorithms/load_steps.h>
 #include <common/contact/contact_forces.h>
@@ -108,8 +109,9 @@ namespace StepFriction2d
     DiscretizationStop<dim> stop;
     RunOutput<dim>          output;
 
-    // For scenes with a history.
-    LoadSteps<dim> load_steps;
+    // For scenes with given forces, and with a history.
+    ForceControl<dim> force_control;
+    LoadSteps<dim>    load_steps;
 
     // Wall times of the present level. What is done once per mesh and what the
     // iteration takes are counted separately.
@@ -138,6 +140,7 @@ namespace StepFriction2d
     , state(0, false)
     , stop(parameters.solver)
     , output(parameters, scene, std::cout, version(), MPI_COMM_WORLD)
+    , force_control(scene)
   {}
 
 
@@ -174,8 +177,11 @@ namespace StepFriction2d
     displacement = discretization.vector();
     tractions    = discretization.vector();
     if (start == Start::from_checkpoint)
-      Checkpoints::load_vectors(discretization.dof_handler(),
-                                {&displacement, &tractions});
+      {
+        Checkpoints::load_vectors(discretization.dof_handler(),
+                                  {&displacement, &tractions});
+        force_control.adopt(discretization, displacement);
+      }
     output.check_start(discretization);
     return level;
   }
@@ -343,13 +349,25 @@ namespace StepFriction2d
     SafeguardedSolver<dim> solver(problem, levels, iteration, settings);
     setup_seconds = discretization.setup_seconds() + timer.wall_time();
 
+    //
+    // A scene may give the total force on a part of the boundary instead of its
+    // displacement. Then <code>ForceControl</code> moves this part, compares
+    // its reaction with the force, and solves again; without such a part it
+    // solves once.
     timer.restart();
-    report =
-      solver.solve(displacement,
-                   state,
-                   [&](const unsigned int cycle, const double increment) {
-                     output.console().progress(level, cycle, increment);
-                   });
+    report = force_control.solve(
+      discretization,
+      displacement,
+      state,
+      settings.certificate_tolerance,
+      [&]() {
+        return solver.solve(
+          displacement,
+          state,
+          [&](const unsigned int cycle, const double increment) {
+            output.console().progress(level, cycle, increment);
+          });
+      });
     solve_seconds = timer.wall_time();
 
     // The iteration has not touched the values at hanging nodes, which we now
@@ -508,7 +526,7 @@ namespace StepFriction2d
             // the method changes: the contact nodes know where they have been,
             // and all five parts ask them.
             load_steps.begin_next(
-              scene, discretization, displacement, tractions);
+              scene, discretization, force_control, displacement, tractions);
             output.begin_load_step(scene);
             continue;
           }

@@ -57,6 +57,7 @@ namespace StepFriction3d
         nest.begin_on_level(output.load_checkpoint(nest.mesh()));
         Checkpoints::load_vectors(nest.discretization().dof_handler(),
                                   nest.guess());
+        nest.adopt_guess();
         for (const LevelRecord &record : output.levels())
           nest.add_level(
             record.error_at_least, record.dofs, record.contraction);

@@ -9,6 +9,7 @@ namespace Friction
   void
   LoadSteps<dim>::begin_next(Scene<dim>          &scene,
                              Discretization<dim> &discretization,
+                             ForceControl<dim>   &force_control,
                              VectorType          &displacement,
                              VectorType          &tractions)
   {
@@ -18,6 +19,7 @@ namespace Friction
     const VectorType old_prescribed =
       discretization.constraints().prescribed_values();
     scene.begin_load_step(scene.load_step() + 1);
+    force_control.predict();
     discretization.set_up();
     discretization.set_slip_origin(old_displacement);
 

@@ -1,6 +1,7 @@
 #ifndef friction_algorithms_load_steps_h
 #define friction_algorithms_load_steps_h
 
+#include <common/algorithms/force_control.h>
 #include <common/discretization/discretization.h>
 #include <common/scene/scene.h>
 
@@ -25,10 +26,12 @@ namespace Friction
      * and the last change on this mesh once more, as many times as prescribed
      * displacements change once more, or if none did, times. That may be a
      * negative number, where loads are taken back. After the first step there
-     * is no change to repeat. Collective.
+     * is no change to repeat. Platens are moved to where the forces of the next
+     * step are expected. Collective.
      */
     void begin_next(Scene<dim>          &scene,
                     Discretization<dim> &discretization,
+                    ForceControl<dim>   &force_control,
                     VectorType          &displacement,
                     VectorType          &tractions);
 

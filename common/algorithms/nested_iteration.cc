@@ -19,6 +19,7 @@ namespace Friction
     , triangulation(make_triangulation<dim>(communicator))
     , the_discretization(the_scene, *triangulation)
     , stop(the_parameters.solver)
+    , force_control(the_scene)
     , contact_state(0, false)
   {}
 
@@ -71,8 +72,13 @@ namespace Friction
     ContactSolver<dim> solver(the_discretization, settings);
     solver_setup_seconds = timer.wall_time();
     timer.restart();
-    const SolverReport report = solver.solve(solution, state, progress);
-    solution_seconds          = timer.wall_time();
+    const SolverReport report = force_control.solve(
+      the_discretization,
+      solution,
+      state,
+      settings.certificate_tolerance,
+      [&]() { return solver.solve(solution, state, progress); });
+    solution_seconds = timer.wall_time();
     the_discretization.interpolate_hanging_nodes(solution);
     return report;
   }
@@ -236,8 +242,11 @@ namespace Friction
     ++the_level;
     guessed_displacement = u;
     guessed_tractions    = contact_stresses;
-    load_steps.begin_next(
-      the_scene, the_discretization, guessed_displacement, guessed_tractions);
+    load_steps.begin_next(the_scene,
+                          the_discretization,
+                          force_control,
+                          guessed_displacement,
+                          guessed_tractions);
     the_discretization.assemble(bilinear_form);
     return true;
   }

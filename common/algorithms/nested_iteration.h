@@ -3,6 +3,7 @@
 
 #include <common/algorithms/contact_solver.h>
 #include <common/algorithms/discretization_stop.h>
+#include <common/algorithms/force_control.h>
 #include <common/algorithms/load_steps.h>
 #include <common/discretization/discretization.h>
 #include <common/estimate/residual_estimator.h>
@@ -139,11 +140,18 @@ namespace Friction
     }
 
     /** What has been interpolated to this mesh: displacement and contact
-     * tractions. */
+     * tractions. If it is replaced, adopt_guess() has to follow. */
     std::vector<VectorType *>
     guess()
     {
       return {&guessed_displacement, &guessed_tractions};
+    }
+
+    /** Platens are where the guess has them. */
+    void
+    adopt_guess()
+    {
+      force_control.adopt(the_discretization, guessed_displacement);
     }
 
     /** The accepted solution, with ghosts of deal.II and hanging nodes. */
@@ -197,6 +205,7 @@ namespace Friction
     std::unique_ptr<parallel::distributed::Triangulation<dim>> triangulation;
     Discretization<dim>     the_discretization;
     DiscretizationStop<dim> stop;
+    ForceControl<dim>       force_control;
     LoadSteps<dim>          load_steps;
     unsigned int            the_level = 0;
 

@@ -25,4 +25,15 @@ namespace Friction
     return std::pow(outer_changes.back() / outer_changes.front(),
                     1. / (outer_changes.size() - 1));
   }
+
+
+
+  void
+  SolverReport::add_earlier(const SolverReport &report)
+  {
+    outer_iterations += report.outer_iterations;
+    cycles.insert(cycles.begin(), report.cycles.begin(), report.cycles.end());
+    attempts.insert(
+      attempts.begin(), report.attempts.begin(), report.attempts.end());
+  }
 } // namespace Friction

@@ -74,6 +74,10 @@ namespace Friction
     /// The energy of the solution, and its residual f - A u at all nodes.
     double     energy = 0;
     VectorType residual;
+
+    /// Adds what an earlier solution has taken which led to this one: cycles,
+    /// outer iterations and attempts.
+    void add_earlier(const SolverReport &report);
   };
 } // namespace Friction
 

@@ -20,41 +20,6 @@ namespace Friction
 {
   namespace
   {
-    // For each component of each node that the process owns the number of the
-    // condition that prescribes it, or their number: then it is pinned, or
-    // free.
-    template <int dim>
-    std::vector<unsigned int>
-    find_holders(const Discretization<dim> &discretization)
-    {
-      const NodalConstraints<dim> &constraints = discretization.constraints();
-      const auto &conditions = discretization.scene().dirichlet_conditions();
-      std::vector<unsigned int> holders(dim * constraints.n_owned_nodes(),
-                                        conditions.size());
-      for (const auto &cell :
-           discretization.dof_handler().active_cell_iterators())
-        if (!cell->is_artificial() && cell->at_boundary())
-          for (const unsigned int f : cell->face_indices())
-            for (unsigned int i = 0; i < conditions.size(); ++i)
-              if (cell->at_boundary(f) &&
-                  cell->face(f)->boundary_id() == conditions[i].boundary_id)
-                for (unsigned int v = 0; v < cell->face(f)->n_vertices(); ++v)
-                  {
-                    const unsigned int node =
-                      constraints.node_of_dof(cell->vertex_dof_index(
-                        GeometryInfo<dim>::face_to_cell_vertices(f, v), 0));
-                    if (node >= constraints.n_owned_nodes())
-                      continue;
-                    for (unsigned int d = 0; d < dim; ++d)
-                      if (conditions[i].components[d])
-                        holders[dim * node + d] =
-                          std::min(holders[dim * node + d], i);
-                  }
-      return holders;
-    }
-
-
-
     // The integral of a load over a cell or a face.
     template <int dim>
     void
@@ -190,11 +155,50 @@ namespace Friction
             text << ", normal " << number(forces[i].normal) << ", tangential ";
             print(forces[i].tangential);
           }
+        if (forces[i].is_platen)
+          {
+            text << ", moved by (";
+            for (unsigned int d = 0; d < dim; ++d)
+              text << (d == 0 ? "" : ", ") << forces[i].moved[d];
+            text << ')';
+          }
       }
     text.precision(1);
     text << ". They balance to " << std::scientific << imbalance()
          << " of the largest.";
     return text.str();
+  }
+
+
+
+  template <int dim>
+  std::vector<unsigned int>
+  find_holders(const Discretization<dim> &discretization)
+  {
+    const NodalConstraints<dim> &constraints = discretization.constraints();
+    const auto &conditions = discretization.scene().dirichlet_conditions();
+    std::vector<unsigned int> holders(dim * constraints.n_owned_nodes(),
+                                      conditions.size());
+    for (const auto &cell :
+         discretization.dof_handler().active_cell_iterators())
+      if (!cell->is_artificial() && cell->at_boundary())
+        for (const unsigned int f : cell->face_indices())
+          for (unsigned int i = 0; i < conditions.size(); ++i)
+            if (cell->at_boundary(f) &&
+                cell->face(f)->boundary_id() == conditions[i].boundary_id)
+              for (unsigned int v = 0; v < cell->face(f)->n_vertices(); ++v)
+                {
+                  const unsigned int node =
+                    constraints.node_of_dof(cell->vertex_dof_index(
+                      GeometryInfo<dim>::face_to_cell_vertices(f, v), 0));
+                  if (node >= constraints.n_owned_nodes())
+                    continue;
+                  for (unsigned int d = 0; d < dim; ++d)
+                    if (conditions[i].components[d])
+                      holders[dim * node + d] =
+                        std::min(holders[dim * node + d], i);
+                }
+    return holders;
   }
 
 
@@ -267,6 +271,11 @@ namespace Friction
         const std::string id =
           std::to_string(scene.dirichlet_conditions()[i].boundary_id);
         add("held_" + id, "of what holds boundary " + id, reactions[i]);
+        if (const auto &platen = scene.dirichlet_conditions()[i].platen)
+          {
+            balance.forces.back().is_platen = true;
+            balance.forces.back().moved     = *platen->position;
+          }
       }
     if (!scene.pinned_points().empty())
       add("pinned", "of what pins points", reactions.back());
@@ -286,8 +295,10 @@ namespace Friction
 
   template struct ForceBalance<2>;
   template struct ForceBalance<3>;
-  template ForceBalance<2> force_balance(const Discretization<2> &,
-                                         const VectorType &);
-  template ForceBalance<3> force_balance(const Discretization<3> &,
-                                         const VectorType &);
+  template std::vector<unsigned int> find_holders(const Discretization<2> &);
+  template std::vector<unsigned int> find_holders(const Discretization<3> &);
+  template ForceBalance<2>           force_balance(const Discretization<2> &,
+                                                   const VectorType &);
+  template ForceBalance<3>           force_balance(const Discretization<3> &,
+                                                   const VectorType &);
 } // namespace Friction

@@ -31,6 +31,11 @@ namespace Friction
 
     Tensor<1, dim> total;
 
+    /// Where displacements are those of a platen: how far it is from where
+    /// 'Displacement' has it, a length.
+    bool           is_platen = false;
+    Tensor<1, dim> moved;
+
     /// Where the body may touch an obstacle: the sum of the nodal normal
     /// forces, positive in compression, and that of the vectors of the
     /// tangential ones. They are parts of the total where the boundary is
@@ -44,6 +49,7 @@ namespace Friction
     serialize(Archive &archive, const unsigned int /*version*/)
     {
       archive &name &description &total &is_contact &normal &tangential;
+      archive &is_platen                                    &moved;
     }
   };
 
@@ -72,6 +78,17 @@ namespace Friction
       archive &forces;
     }
   };
+
+
+
+  /**
+   * For each component of each node that the process owns the number of the
+   * Dirichlet condition that prescribes it, the first one if there are several;
+   * or the number of conditions: then it is pinned, or free.
+   */
+  template <int dim>
+  std::vector<unsigned int>
+  find_holders(const Discretization<dim> &discretization);
 
 
 

@@ -4,6 +4,7 @@
 #include <common/discretization/leaf_matrix.h>
 #include <common/discretization/node_numbering.h>
 #include <common/parallel/collective_error.h>
+#include <common/parallel/reductions.h>
 #include <common/parallel/run_clock.h>
 
 #include <deal.II/base/quadrature_lib.h>
@@ -20,6 +21,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -99,14 +101,33 @@ namespace Friction
     DoFTools::make_hanging_node_constraints(dofs, hanging);
     hanging.close();
 
-    const RunScope part(Compatibility::mpi_communicator(mesh),
+    const RunScope                  part(Compatibility::mpi_communicator(mesh),
                         RunPart::contact);
+    const AffineConstraints<double> prescribed = find_prescribed_values();
 
-    // Prescribed displacements are collected by an object of the same class,
-    // because interpolate_boundary_values() wants one; it is never used for
-    // eliminating anything.
-    AffineConstraints<double> prescribed =
-      Compatibility::make_constraints(owned, relevant);
+    // What the rows of the matrix couple to, hanging nodes condensed. It comes
+    // before there is a matrix, because with several processes it says whose
+    // displacements a process has to know.
+    {
+      const RunScope part_of_assembly(Compatibility::mpi_communicator(mesh),
+                                      RunPart::assembly);
+      assembler = std::make_unique<LeafAssembler<dim>>(dofs, hanging);
+    }
+    nodal_constraints = std::make_unique<NodalConstraints<dim>>(
+      dofs, hanging, prescribed, assembler->coupled_dofs());
+  }
+
+
+
+  // Prescribed displacements are collected by an object of the class for
+  // constraints, because interpolate_boundary_values() wants one; it is never
+  // used for eliminating anything.
+  template <int dim>
+  AffineConstraints<double>
+  Discretization<dim>::find_prescribed_values() const
+  {
+    AffineConstraints<double> prescribed = Compatibility::make_constraints(
+      dofs.locally_owned_dofs(), DoFTools::extract_locally_relevant_dofs(dofs));
     on_all_processes(Compatibility::mpi_communicator(dofs), [&]() {
       for (const auto &condition : the_scene.dirichlet_conditions())
         VectorTools::interpolate_boundary_values(the_mapping,
@@ -133,17 +154,18 @@ namespace Friction
               }
           });
     prescribed.close();
+    return prescribed;
+  }
 
-    // What the rows of the matrix couple to, hanging nodes condensed. It comes
-    // before there is a matrix, because with several processes it says whose
-    // displacements a process has to know.
-    {
-      const RunScope part_of_assembly(Compatibility::mpi_communicator(mesh),
-                                      RunPart::assembly);
-      assembler = std::make_unique<LeafAssembler<dim>>(dofs, hanging);
-    }
-    nodal_constraints = std::make_unique<NodalConstraints<dim>>(
-      dofs, hanging, prescribed, assembler->coupled_dofs());
+
+
+  template <int dim>
+  void
+  Discretization<dim>::update_prescribed_values()
+  {
+    const RunScope part(Compatibility::mpi_communicator(mesh),
+                        RunPart::contact);
+    nodal_constraints->update_values(find_prescribed_values());
   }
 
 
@@ -270,6 +292,28 @@ namespace Friction
     assembler.reset();
     check_that_body_is_held(*this);
     seconds_of_assembly = timer.wall_time();
+  }
+
+
+
+  template <int dim>
+  double
+  Discretization<dim>::body_size() const
+  {
+    std::vector<double> box(2 * dim, -std::numeric_limits<double>::max());
+    for (const auto &cell : mesh.active_cell_iterators())
+      if (cell->is_locally_owned())
+        for (const unsigned int v : cell->vertex_indices())
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              box[d]       = std::max(box[d], cell->vertex(v)[d]);
+              box[dim + d] = std::max(box[dim + d], -cell->vertex(v)[d]);
+            }
+    max_over_processes(box, nodal_constraints->communicator());
+    double square = 0;
+    for (unsigned int d = 0; d < dim; ++d)
+      square += std::pow(box[d] + box[dim + d], 2);
+    return std::sqrt(square);
   }
 
 

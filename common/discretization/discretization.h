@@ -89,6 +89,10 @@ namespace Friction
      *                       to be zero where something is prescribed. */
     void assemble(const CellForm<dim> &bilinear_form);
 
+    /** Prescribed displacements are asked of the scene anew, which has moved a
+     * platen. What was a solution is none any more. Collective. */
+    void update_prescribed_values();
+
     /**
      * Has friction count slip from a displacement on, that of the end of an
      * earlier load step: until the next set_up() the law of friction is about
@@ -166,6 +170,9 @@ namespace Friction
       return *discrete_problem;
     }
 
+    /** The diagonal of a box around the body. Collective. */
+    double body_size() const;
+
     /** A vector of zeros on the leaf mesh. */
     VectorType
     vector() const
@@ -206,6 +213,8 @@ namespace Friction
     double seconds_of_set_up = 0, seconds_of_assembly = 0;
 
     void find_constraints();
+
+    AffineConstraints<double> find_prescribed_values() const;
 
     void measure_faces();
   };

@@ -78,6 +78,24 @@ namespace Friction
 
   template <int dim>
   void
+  NodalConstraints<dim>::update_values(
+    const AffineConstraints<double> &dirichlet)
+  {
+    for (unsigned int node = 0; node < n_owned_nodes(); ++node)
+      for (unsigned int c = 0; c < dim; ++c)
+        {
+          const auto dof = leaf_partitioner->local_to_global(dim * node + c);
+          if (is_prescribed(node, c) && dirichlet.is_constrained(dof))
+            values.local_element(dim * node + c) =
+              dirichlet.get_inhomogeneity(dof);
+        }
+    values.update_ghost_values();
+  }
+
+
+
+  template <int dim>
+  void
   NodalConstraints<dim>::impose(VectorType &u) const
   {
     for (unsigned int node = 0; node < n_owned_nodes(); ++node)

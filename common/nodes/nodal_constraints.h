@@ -130,6 +130,12 @@ namespace Friction
     void impose(VectorType &u) const;
 
     /**
+     * Other values of the components that are prescribed.
+     * @param dirichlet  as in the constructor, with the same lines. Collective.
+     */
+    void update_values(const AffineConstraints<double> &dirichlet);
+
+    /**
      * Prescribes the present value @p value of a component of an owned node:
      * this is how the bonded comparison problem is made out of a contact
      * problem. When all is said, update_ghosts() has to follow.

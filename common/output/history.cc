@@ -207,6 +207,11 @@ namespace Friction
                  "force " + force.description + " on the body",
                  Q::force,
                  [i](const R &r) { return r.balance.forces[i].total; });
+          if (force.is_platen)
+            column("platen" + force.name.substr(std::string("held").size()),
+                   "how far it was moved from where 'Displacement' has it",
+                   Q::length,
+                   [i](const R &r) { return r.balance.forces[i].moved; });
           if (!force.is_contact)
             continue;
           column(force.name + "_normal",

@@ -53,7 +53,8 @@ namespace Friction
     bool
     wants_forces() const
     {
-      return parameters.output.forces;
+      return parameters.output.forces ||
+        !parameters.boundary_conditions.force.empty();
     }
 
     /** What should be known before the first solution: prints the warnings of

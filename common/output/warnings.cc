@@ -96,30 +96,6 @@ namespace Friction
 
 
 
-    // The diagonal of a box around the body.
-    template <int dim>
-    double
-    body_size(const Discretization<dim> &discretization)
-    {
-      std::vector<double> box(2 * dim, -std::numeric_limits<double>::max());
-      for (const auto &cell :
-           discretization.dof_handler().active_cell_iterators())
-        if (cell->is_locally_owned())
-          for (const unsigned int v : cell->vertex_indices())
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                box[d]       = std::max(box[d], cell->vertex(v)[d]);
-                box[dim + d] = std::max(box[dim + d], -cell->vertex(v)[d]);
-              }
-      max_over_processes(box, discretization.constraints().communicator());
-      double square = 0;
-      for (unsigned int d = 0; d < dim; ++d)
-        square += std::pow(box[d] + box[dim + d], 2);
-      return std::sqrt(square);
-    }
-
-
-
     // The coarse mesh is known to all processes.
     template <int dim>
     void
@@ -278,7 +254,7 @@ namespace Friction
           }
       }
     const auto deepest = largest<dim>(communicator, depth, where);
-    if (deepest.first > 1e-10 * body_size(discretization))
+    if (deepest.first > 1e-10 * discretization.body_size())
       warnings.push_back("Warning: the body lies inside the obstacle before it "
                          "is loaded, at " +
                          describe(deepest.second) + " by " +
@@ -327,7 +303,7 @@ namespace Friction
         result.distance = std::max(result.distance, std::abs(distance));
       }
 
-    result.size         = body_size(discretization);
+    result.size         = discretization.body_size();
     result.displacement = displacement.linfty_norm();
     result.n_contact    = Utilities::MPI::sum(result.n_contact, communicator);
     result.angle        = Utilities::MPI::max(result.angle, communicator);

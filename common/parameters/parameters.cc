@@ -1145,6 +1145,8 @@ namespace Friction
       auto &conditions        = parameters.boundary_conditions;
       conditions.displacement = read_conditions(
         "Boundary conditions/Displacement", "id: u_x, u_y[, u_z]", values);
+      conditions.force = read_conditions(
+        "Boundary conditions/Force", "id: F_x, F_y[, F_z]", values);
       conditions.traction = read_conditions(
         "Boundary conditions/Traction", "id: t_x, t_y[, t_z]", values);
       conditions.pinned_points =

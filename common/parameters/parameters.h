@@ -190,6 +190,7 @@ namespace Friction
     struct BoundaryConditions
     {
       std::vector<ConditionText> displacement;
+      std::vector<ConditionText> force;
       std::vector<ConditionText> traction;
       std::vector<ConditionText> pinned_points;
       std::string                body_force; ///< comma separated, or empty

@@ -212,7 +212,8 @@ namespace Friction
                            "them otherwise.");
         dirichlet.push_back({read_boundary_id(text.key, where),
                              ComponentMask(mask),
-                             make_function(components, where)});
+                             make_function(components, where),
+                             nullptr});
       }
 
     for (const ConditionText &text :
@@ -253,6 +254,7 @@ namespace Friction
             pinned.push_back({point, d, value[d]});
       }
     check_once(dirichlet, here + "'Boundary conditions/Displacement'");
+    read_forces();
     for (unsigned int i = 0; i < pinned.size(); ++i)
       for (unsigned int j = 0; j < i; ++j)
         if (pinned[i].point == pinned[j].point &&
@@ -396,6 +398,88 @@ namespace Friction
         if (text.friction_coefficient == 0.)
           condition.friction_law = FrictionLaw::none;
       }
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::read_forces()
+  {
+    const std::string where = subject() + "'Boundary conditions/Force'";
+    platen_positions.resize(dirichlet.size());
+    for (const ConditionText &text : parameters.boundary_conditions.force)
+      {
+        if (text.components.size() != dim)
+          throw InputError(
+            where + " " +
+            wrong_number(dim, text.components.size(), "components"));
+        const types::boundary_id id = read_boundary_id(text.key, where);
+        const std::string there = where + ", boundary " + std::to_string(id);
+        const auto        condition =
+          std::find_if(dirichlet.begin(), dirichlet.end(), [&](const auto &c) {
+            return c.boundary_id == id;
+          });
+        if (condition == dirichlet.end())
+          throw InputError(
+            there +
+            ": 'Displacement' does not say where it begins; give "
+            "a displacement with which it is in contact.");
+        if (condition->platen != nullptr)
+          throw InputError(there +
+                           ", is there twice; say all about it in one "
+                           "condition.");
+
+        Platen<dim>              platen;
+        std::vector<std::string> components = text.components;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            platen.is_controlled[d] = (components[d] != "free");
+            if (!platen.is_controlled[d])
+              components[d] = "0";
+            else if (!condition->components[d])
+              throw InputError(there + ": 'Displacement' leaves component " +
+                               std::to_string(d + 1) +
+                               " free; give one to begin with, or no force.");
+          }
+        if (parameters.scene.rotation_angle != 0. &&
+            std::find(text.components.begin(), text.components.end(), "free") !=
+              text.components.end())
+          throw InputError(where +
+                           " leaves a component free, which is not possible "
+                           "together with 'Scene/Rotation angle'; set one of "
+                           "them otherwise.");
+        platen.force = make_function(components, where);
+        Point<dim> elsewhere;
+        for (unsigned int d = 0; d < dim; ++d)
+          elsewhere[d] = .7 + .4 * d;
+        for (unsigned int d = 0; d < dim; ++d)
+          if (platen.force->value(Point<dim>(), d) !=
+              platen.force->value(elsewhere, d))
+            throw InputError(there +
+                             ": a total force cannot depend on the place; for "
+                             "one that is distributed use 'Traction'.");
+
+        const unsigned int i = condition - dirichlet.begin();
+        platen_positions[i]  = std::make_shared<Tensor<1, dim>>();
+        platen.position      = platen_positions[i];
+        condition->displacement =
+          moved_function<dim>(condition->displacement, platen.position);
+        condition->platen = std::make_shared<const Platen<dim>>(platen);
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::move_platen(const unsigned int    condition,
+                          const Tensor<1, dim> &position)
+  {
+    AssertIndexRange(condition, dirichlet.size());
+    Assert(dirichlet[condition].platen != nullptr,
+           ExcMessage("This part of the boundary is no platen."));
+    *platen_positions[condition] = position;
   }
 
 

@@ -14,6 +14,7 @@
 #include <deal.II/grid/tria.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -22,6 +23,24 @@
 namespace Friction
 {
   using namespace dealii;
+
+  /**
+   * A part of the boundary that is moved as a rigid body, without being turned,
+   * until the total force on it is a given one.
+   */
+  template <int dim>
+  struct Platen
+  {
+    /// Of which components the force is given, not the displacement.
+    std::array<bool, dim> is_controlled;
+
+    /// What holds the boundary exerts on the body, dim components, the same
+    /// everywhere; of no meaning where the displacement is given.
+    std::shared_ptr<const Function<dim>> force;
+
+    /// How far it is from where 'Displacement' has it, a length.
+    std::shared_ptr<const Tensor<1, dim>> position;
+  };
 
   /**
    * A part of the boundary where (some components of) the displacement are
@@ -35,8 +54,12 @@ namespace Friction
     /// The components that are prescribed.
     ComponentMask components;
 
-    /// The displacement, dim components, a length.
+    /// The displacement, dim components, a length. That of a platen is where it
+    /// has been moved to.
     std::shared_ptr<const Function<dim>> displacement;
+
+    /// Null if all displacements are given.
+    std::shared_ptr<const Platen<dim>> platen;
   };
 
   /**
@@ -211,6 +234,14 @@ namespace Friction
       return dirichlet;
     }
 
+    /**
+     * Moves the platen of a condition: from now on the prescribed displacement
+     * is that of 'Displacement' and this vector. A discretisation has to be
+     * told, see Discretization::update_prescribed_values().
+     */
+    void move_platen(const unsigned int    condition,
+                     const Tensor<1, dim> &position);
+
     /// Sorted by x.
     const std::vector<PinnedPoint<dim>> &
     pinned_points() const
@@ -325,9 +356,15 @@ namespace Friction
     std::vector<ContactCondition<dim>>   contacts;
     std::vector<DirichletCondition<dim>> dirichlet;
     std::vector<TractionCondition<dim>>  tractions;
-    std::vector<PinnedPoint<dim>>        pinned;
-    std::shared_ptr<const Function<dim>> force;
-    std::shared_ptr<const Function<dim>> exact;
+
+    /// Of each Dirichlet condition, for those that have a platen.
+    std::vector<std::shared_ptr<Tensor<1, dim>>> platen_positions;
+    std::vector<PinnedPoint<dim>>                pinned;
+    std::shared_ptr<const Function<dim>>         force;
+    std::shared_ptr<const Function<dim>>         exact;
+
+    /// Makes platens of the conditions that are in 'Force'.
+    void read_forces();
 
     std::shared_ptr<const Function<dim>>
     make_function(const std::vector<std::string> &components,

@@ -142,6 +142,30 @@ namespace Friction
       std::shared_ptr<const Function<dim>> function;
       Tensor<2, dim>                       rotation;
     };
+
+
+
+    template <int dim>
+    class MovedFunction : public Function<dim>
+    {
+    public:
+      MovedFunction(const std::shared_ptr<const Function<dim>>  &function,
+                    const std::shared_ptr<const Tensor<1, dim>> &summand)
+        : Function<dim>(dim)
+        , function(function)
+        , summand(summand)
+      {}
+
+      double
+      value(const Point<dim> &p, const unsigned int component) const override
+      {
+        return function->value(p, component) + (*summand)[component];
+      }
+
+    private:
+      std::shared_ptr<const Function<dim>>  function;
+      std::shared_ptr<const Tensor<1, dim>> summand;
+    };
   } // namespace
 
 
@@ -155,6 +179,16 @@ namespace Friction
   {
     return std::make_shared<CheckedFunction<dim>>(
       function, where, text, smallest);
+  }
+
+
+
+  template <int dim>
+  std::shared_ptr<const Function<dim>>
+  moved_function(const std::shared_ptr<const Function<dim>>  &function,
+                 const std::shared_ptr<const Tensor<1, dim>> &summand)
+  {
+    return std::make_shared<MovedFunction<dim>>(function, summand);
   }
 
 
@@ -184,6 +218,12 @@ namespace Friction
                    const std::string &,
                    const std::string &,
                    const double);
+  template std::shared_ptr<const Function<2>>
+  moved_function(const std::shared_ptr<const Function<2>> &,
+                 const std::shared_ptr<const Tensor<1, 2>> &);
+  template std::shared_ptr<const Function<3>>
+  moved_function(const std::shared_ptr<const Function<3>> &,
+                 const std::shared_ptr<const Tensor<1, 3>> &);
   template std::shared_ptr<const Function<2>>
   turned_function(const std::shared_ptr<const Function<2>> &,
                   const Tensor<2, 2> &);

@@ -32,6 +32,15 @@ namespace Friction
                    const double smallest = -largest_number);
 
   /**
+   * A function of dim components and a vector that is added to it everywhere.
+   * @param summand  as it is when the function is evaluated.
+   */
+  template <int dim>
+  std::shared_ptr<const Function<dim>>
+  moved_function(const std::shared_ptr<const Function<dim>>  &function,
+                 const std::shared_ptr<const Tensor<1, dim>> &summand);
+
+  /**
    * A function given for the scene as written, seen from the turned scene: its
    * argument is turned back, and its value, if a vector, is turned.
    */

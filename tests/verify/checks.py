@@ -27,6 +27,7 @@ def verify_level(level, reported, scene, tolerance, before=None):
     check_reported_numbers(verdict, found, reported, tolerance)
     check_reported_nodes(verdict, found, reported, tolerance)
     check_reported_forces(verdict, found, reported, tolerance)
+    check_given_forces(verdict, found, scene, tolerance)
     return verdict, compare_with_scene(verdict, level, scene, found.hanging, exact)
 
 
@@ -306,6 +307,41 @@ def check_reported_numbers(verdict, found, reported, tolerance):
                       f"{number:.6g}")
 
 
+def reactions_at_nodes(found):
+    """What prescribed displacements exert on the body (nodes x dim): -r, without the
+    forces of obstacles."""
+    level, reactions = found.level, -found.r.copy()
+    reactions[level.contact_nodes] += (found.pressing[:, None] * level.contact_normals
+                                       + found.r_T)
+    reactions[~level.is_prescribed] = 0
+    return reactions
+
+
+def check_given_forces(verdict, found, scene, tolerance):
+    """What holds a platen exerts the force that the scene gives."""
+    level, is_taken = found.level, np.zeros(found.u.shape, bool)
+    reactions = reactions_at_nodes(found)
+    platens, forces, missing = dict(scene.conditions("Boundary conditions/Force")), [], []
+    for key, components in scene.conditions("Boundary conditions/Displacement"):
+        if not platens or not key.isdigit():
+            continue
+        own = np.zeros(found.u.shape, bool)
+        own[np.unique(level.boundary_faces[level.boundary_ids == int(key)])] = [
+            c != "free" for c in components]
+        own &= ~is_taken
+        is_taken |= own
+        given = platens.get(key, [])
+        wanted = scene.vector_field(["0" if c == "free" else c for c in given],
+                                    np.zeros((1, level.dim)))[0] if given else None
+        for d, force in enumerate(given):
+            if force != "free":
+                forces += [wanted[d], reactions[own[:, d], d].sum()]
+                missing.append(abs(forces[-1] - forces[-2]))
+    if missing:
+        verdict.check(None, np.array(missing) / (np.abs(forces).max() or 1.), tolerance,
+                      "a force is not that of 'Boundary conditions/Force'")
+
+
 def check_reported_forces(verdict, found, reported, tolerance):
     """The forces on the body, if they are there: those of the obstacle, reactions as
     far as a boundary does not share nodes with another one that is held, loads, and
@@ -322,9 +358,7 @@ def check_reported_forces(verdict, found, reported, tolerance):
             mine.update({name: contact[own].sum(axis=0),
                          name + "_normal": found.pressing[own].sum(),
                          name + "_tangential": -found.r_T[own].sum(axis=0)})
-    others = -found.r.copy()
-    others[level.contact_nodes] -= contact
-    others[~level.is_prescribed] = 0
+    others = reactions_at_nodes(found)
     held = {int(name[len("held_"):]): np.unique(
         level.boundary_faces[level.boundary_ids == int(name[len("held_"):])])
         for name in forces if name.startswith("held_")}

@@ -95,17 +95,26 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
             new &= ~is_set
             values[new] = scene.vector_field(texts, X)[new]
             is_set[new] = True
+            return new
 
+        hanging_nodes = list(hanging)
+        platens = dict(scene.conditions("Boundary conditions/Force"))
         for key, components in scene.conditions("Boundary conditions/Displacement"):
-            prescribe(np.unique(level.boundary_faces[level.boundary_ids == boundary_id(key)]),
-                      components)
+            new = prescribe(
+                np.unique(level.boundary_faces[level.boundary_ids == boundary_id(key)]),
+                components)
+            # A platen may be anywhere, but moves as a whole.
+            new[hanging_nodes] = False
+            for d, force in enumerate(platens.get(key, [])):
+                if force != "free" and new[:, d].any():
+                    moved = (level.values - values)[new[:, d], d]
+                    values[new[:, d], d] += moved.mean()
         size = np.linalg.norm(X[level.cells[:, 0]] - X[level.cells[:, -1]], axis=1)
         for key, components in scene.conditions("Boundary conditions/Pinned points"):
             point = scene.rotation @ scene.numbers(key.strip()[1:-1])
             nearest = np.argmin(np.linalg.norm(X - point, axis=1))
             if np.linalg.norm(X[nearest] - point) < 1e-8 * size.max():
                 prescribe([nearest], components)
-        hanging_nodes = list(hanging)
         is_set[hanging_nodes], values[hanging_nodes] = False, 0
         verdict.demand(np.array_equal(is_set, level.is_prescribed),
                        "other displacements are prescribed than the scene says")

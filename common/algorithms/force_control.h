@@ -1,0 +1,121 @@
+#ifndef friction_algorithms_force_control_h
+#define friction_algorithms_force_control_h
+
+#include <common/algorithms/solver_report.h>
+#include <common/contact/contact_state.h>
+#include <common/discretization/discretization.h>
+#include <common/scene/scene.h>
+
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/vector.h>
+
+#include <functional>
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * Finds how far the platens of a scene have to be moved, so that the forces
+   * on them are those that the scene asks for, see Platen.
+   *
+   * With positions $s$ of all controlled components, the forces $R(s)$ of what
+   * holds the body are the reactions of the solution with these displacements
+   * prescribed: its residual, summed over the nodes of a platen. $R(s)=G$ is an
+   * equation in as many unknowns as there are controlled components, one as a
+   * rule, and Broyden's method solves it, which for one unknown is the secant
+   * method. To begin with, the body is as stiff as if all but the platen were
+   * held, $e^TAe$ with the displacement $e$ of the platen; this is far too
+   * stiff, so that the first step is too short, and never too long. What is
+   * learnt is kept from one mesh, and from one load step, to the next. So a
+   * fine mesh takes one or two solutions more, each from a good guess.
+   *
+   * A body that is not touched yet gives no resistance; steps then grow tenfold
+   * until something is met.
+   */
+  template <int dim>
+  class ForceControl
+  {
+  public:
+    /** @param scene  whose platens are moved; kept by reference. */
+    explicit ForceControl(Scene<dim> &scene);
+
+    /** Whether the scene has platens; if not, nothing here does anything. */
+    bool
+    has_platens() const
+    {
+      return !controls.empty();
+    }
+
+    /**
+     * Solves, compares forces, moves platens, and solves again, until each
+     * force is the given one up to a tolerance.
+     *
+     * @param discretization  whose prescribed values follow the platens.
+     * @param u      displacement: what solve_once solves for, and, on call, its
+     *               initial guess.
+     * @param state  the same of the contact nodes.
+     * @param tolerance   of a force, relative to the largest one of all
+     *                    platens.
+     * @param solve_once  solves with the displacements that are prescribed now,
+     *                    from the guess that @p u and @p state are.
+     * @return the report of the last solution, with the cycles of all. If one
+     * of them has not converged, it is the last.
+     *
+     * Throws InputError if thirty solutions are not enough, or if a platen
+     * would have to be moved farther than the body is large. Collective.
+     */
+    SolverReport solve(Discretization<dim>                 &discretization,
+                       VectorType                          &u,
+                       ContactState                        &state,
+                       const double                         tolerance,
+                       const std::function<SolverReport()> &solve_once);
+
+    /**
+     * Moves the platens to where a displacement has them, that of an earlier
+     * run, for example. Collective.
+     */
+    void adopt(Discretization<dim> &discretization, const VectorType &u);
+
+    /** Moves the platens to where their forces, which the scene has changed by
+     * going to another load step, should be. The discretisation has to be set
+     * up anew. */
+    void predict();
+
+  private:
+    struct Control
+    {
+      unsigned int condition, component;
+    };
+
+    // A position, and what holds the platens there.
+    struct Sample
+    {
+      Vector<double> positions, forces;
+      VectorType     displacement;
+    };
+
+    Scene<dim>          &scene;
+    std::vector<Control> controls;
+    FullMatrix<double>   compliance; // ds/dR; empty until it is known
+    Vector<double>       wanted;     // of the last solution
+
+    Vector<double> positions() const;
+    void           move_to(const Vector<double> &positions);
+    Vector<double> given_forces() const;
+
+    // The nodes of each platen on this process, as numbers of degrees of
+    // freedom.
+    std::vector<std::vector<unsigned int>>
+    find_dofs(const Discretization<dim> &discretization) const;
+
+    void begin_with_stiffness_of_body(
+      const Discretization<dim>                    &discretization,
+      const std::vector<std::vector<unsigned int>> &dofs);
+
+    void learn(const Sample &before, const Sample &now);
+
+    [[noreturn]] void give_up(const Sample &nearest) const;
+  };
+} // namespace Friction
+
+#endif

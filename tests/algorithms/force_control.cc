@@ -1,0 +1,240 @@
+// Boundaries whose total force is given, and not their displacement. Of a block
+// whose stress is the same everywhere, both are known: with the force given,
+// its top has to be found where it is moved to in the scene stick-slip, exact
+// to the tolerance of the solver, on any mesh, hanging nodes included. So it is
+// with one and with all components given, in a turned scene, from where nothing
+// touches, and in a history. Where nothing is known in closed form, the force
+// of a displacement must have this displacement, after few solutions on each
+// mesh.
+
+#include <common/algorithms/nested_iteration.h>
+#include <common/contact/force_balance.h>
+
+#include <iostream>
+#include <string>
+
+#include <tests/support/check.h>
+#include <tests/support/discretized.h>
+
+using namespace Tests;
+
+namespace
+{
+  std::string
+  scene_file(const unsigned int dim, const std::string &name)
+  {
+    return (dim == 2 ? SCENES_DIR "/" : SCENES_3D_DIR "/") + name;
+  }
+
+
+
+  // The largest difference from the solution that the scene knows.
+  template <int dim>
+  double
+  error(const NestedIteration<dim> &nest)
+  {
+    const auto     points = node_points(nest.discretization());
+    Vector<double> exact(dim);
+    double         largest = 0;
+    for (unsigned int i = 0;
+         i < nest.discretization().constraints().n_owned_nodes();
+         ++i)
+      {
+        nest.scene().exact_displacement()->vector_value(points[i], exact);
+        for (unsigned int c = 0; c < dim; ++c)
+          largest =
+            std::max(largest,
+                     std::abs(exact[c] -
+                              nest.displacement().local_element(dim * i + c)));
+      }
+    return Utilities::MPI::max(largest, MPI_COMM_WORLD);
+  }
+
+
+
+  // Of one part of the boundary.
+  template <int dim>
+  ForceOnBody<dim>
+  held(const NestedIteration<dim> &nest, const std::string &name)
+  {
+    const ForceBalance<dim> balance =
+      force_balance(nest.discretization(), nest.report().residual);
+    for (const ForceOnBody<dim> &force : balance.forces)
+      if (force.name == name)
+        return force;
+    AssertThrow(false, ExcInternalError());
+    return ForceOnBody<dim>();
+  }
+
+
+
+  // Some cells are refined.
+  template <int dim>
+  void
+  refine_some(NestedIteration<dim> &nest)
+  {
+    for (const auto &cell : nest.mesh().active_cell_iterators())
+      if (cell->is_locally_owned() && cell->center()[0] > .5 &&
+          cell->center()[dim - 1] < .6)
+        cell->set_refine_flag();
+    nest.refine();
+  }
+
+
+
+  template <int dim>
+  void
+  patch_test(const std::string &what, const std::vector<std::string> &entries)
+  {
+    std::vector<std::string> all = {"Refinement/Initial refinements=0",
+                                    "Solver/Inner tolerance=1e-12",
+                                    "Solver/Certificate tolerance=1e-9"};
+    all.insert(all.end(), entries.begin(), entries.end());
+    NestedIteration<dim> nest(without_safeguards(
+      read_parameters(scene_file(dim, "stick-slip.prm"), all)));
+    nest.begin();
+    double worst = 0;
+    bool   good  = nest.solve().converged;
+    worst        = error(nest);
+    refine_some(nest);
+    good  = nest.solve().converged && good;
+    worst = std::max(worst, error(nest));
+    while (nest.begin_next_load_step())
+      {
+        good  = nest.solve().converged && good;
+        worst = std::max(worst, error(nest));
+      }
+    good = good &&
+      nest.scene().dirichlet_conditions()[0].platen->position->norm() > 1e-3;
+    check_everywhere(good && worst < 1e-9, what);
+    if (!(worst < 1e-9) &&
+        Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+      std::cout << "    error " << worst << std::endl;
+  }
+
+
+
+  // The displacement of a run is found again from its force.
+  template <int dim>
+  void
+  find_again(const std::string &scene,
+             const std::string &boundary,
+             const std::string &start,
+             const std::string &levels)
+  {
+    const std::string    strategy = "Refinement/Strategy=uniform";
+    NestedIteration<dim> given(without_safeguards(
+      read_parameters(scene_file(dim, scene), {strategy, levels})));
+    given.begin();
+    do
+      given.solve();
+    while (given.advance());
+    const Tensor<1, dim> force = held(given, "held_" + boundary).total;
+    std::ostringstream   text;
+    text.precision(16);
+    text << "Boundary conditions/Force=" << boundary << ": ";
+    for (unsigned int d = 0; d + 1 < dim; ++d)
+      text << "free, ";
+    text << force[dim - 1];
+
+    NestedIteration<dim> found(without_safeguards(read_parameters(
+      scene_file(dim, scene),
+      {strategy,
+       levels,
+       text.str(),
+       "Boundary conditions/Displacement=" + boundary + ": " + start})));
+    found.begin();
+    bool good = true;
+    do
+      good = found.solve().converged && good;
+    while (found.advance());
+    const unsigned int n_solutions = found.report().outer_iterations;
+    double             largest     = 0;
+    for (unsigned int i = 0; i < found.displacement().locally_owned_size(); ++i)
+      largest = std::max(largest,
+                         std::abs(found.displacement().local_element(i) -
+                                  given.displacement().local_element(i)));
+    largest = Utilities::MPI::max(largest, MPI_COMM_WORLD) /
+      given.displacement().linfty_norm();
+    check_everywhere(good && largest < 1e-5,
+                     scene + ": the force of a displacement has it");
+    check_everywhere(n_solutions > 1 && n_solutions <= 3,
+                     scene + ": two or three solutions on the last mesh");
+  }
+
+
+
+  // What a run that was interrupted goes on with.
+  void
+  adopt()
+  {
+    const std::vector<std::string> entries = {
+      "Scene/Constants=L = 2; H = 1; U = 0.01; d = 0.02; gap = 0",
+      "Boundary conditions/Displacement=3: U + 0.001*x, -0.6*d",
+      "Boundary conditions/Force=3: free, -p*L"};
+    const Parameters parameters = without_safeguards(
+      read_parameters(SCENES_DIR "/stick-slip.prm", entries));
+    NestedIteration<2> nest(parameters), next(parameters);
+    nest.begin();
+    nest.solve();
+    nest.mark_all();
+    nest.refine();
+    next.scene().make_coarse_mesh(next.mesh());
+    next.mesh().refine_global(1);
+    next.begin_on_level(1);
+    *next.guess()[0] = *nest.guess()[0];
+    next.adopt_guess();
+    const auto position = [](const NestedIteration<2> &n) {
+      return *n.scene().dirichlet_conditions()[0].platen->position;
+    };
+    check_everywhere(position(nest).norm() > 1e-3 &&
+                       (position(nest) - position(next)).norm() < 1e-14,
+                     "platens are where a displacement has them");
+  }
+} // namespace
+
+int
+main(int argc, char **argv)
+{
+  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const std::string                sticks =
+    "Scene/Constants=L = 2; H = 1; U = 0.01; d = 0.02; gap = 0";
+  const std::string both = "Boundary conditions/Force=3: q*L, -p*L";
+  patch_test<2>("pressed by a force, all sticks",
+                {sticks,
+                 "Boundary conditions/Displacement=3: U, -0.5*d",
+                 "Boundary conditions/Force=3: free, -p*L"});
+  patch_test<2>(
+    "pressed and dragged by forces, all sticks",
+    {sticks, "Boundary conditions/Displacement=3: 0, -0.5*d", both});
+  patch_test<2>("in a turned scene",
+                {sticks,
+                 "Scene/Rotation angle=30",
+                 "Boundary conditions/Displacement=3: 0, -0.5*d",
+                 both});
+  patch_test<2>("pressed by a force, all slips",
+                {"Boundary conditions/Displacement=3: U, -1.5*d",
+                 "Boundary conditions/Force=3: free, -p*L"});
+  patch_test<2>("nothing touches to begin with",
+                {"Scene/Constants=L = 2; H = 1; U = 0.01; d = 0.02; gap = 0.01",
+                 "Boundary conditions/Displacement=3: U, 0",
+                 "Boundary conditions/Force=3: free, -p*L"});
+  patch_test<2>(
+    "in a history of pressing and dragging",
+    {"Load steps/Times=0, 1, 2, 3, 4",
+     "Scene/Constants=L = 2; H = 1; gap = 0",
+     "Scene/Definitions=d = 0.02 + 0.01*min(t, 1); p = (lambda + 2*mu)*d/H; "
+     "side = -lambda*d/H; U = if(t < 0.5, 0, if(t < 1.5, 0.01, if(t < 2.5, "
+     "0.015, 0.005))); slip = 0; q = mu*U/H",
+     "Boundary conditions/Displacement=3: 0, -0.02",
+     both});
+  patch_test<3>(
+    "in space, three components",
+    {"Scene/Constants=L = 1.5; W = 1; H = 1; U = 0.01; alpha = pi/6; d = 0.02; "
+     "gap = 0",
+     "Boundary conditions/Displacement=5: 0, 0, -0.5*d",
+     "Boundary conditions/Force=5: qx*L*W, qy*L*W, -p*L*W"});
+  adopt();
+  find_again<2>("hertz.prm", "1", "0, -0.001", "Refinement/Levels=3");
+  find_again<3>("half-ball.prm", "1", "0, 0, -0.02", "Refinement/Levels=2");
+}
