@@ -5,16 +5,17 @@
 #include <common/parallel/reductions.h>
 #include <common/parameters/wrong_number.h>
 
+#include <Eigen/Dense>
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 namespace Friction
 {
   namespace
   {
-    constexpr unsigned int maximum_solutions = 30;
+    constexpr unsigned int maximum_solutions = 60;
 
     // By what factor the compliance may grow in one step, and a step with it.
     constexpr double growth = 10.;
@@ -216,67 +217,111 @@ namespace Friction
     const MPI_Comm   communicator = discretization.constraints().communicator();
     const PhaseCosts costs_before = phase_costs(communicator);
     SolverReport     report       = solve_once();
+    unsigned int     n_solutions  = 1;
     const auto       dofs         = find_dofs(discretization);
     if (compliance.empty())
       begin_with_stiffness_of_body(discretization, dofs);
     wanted = given_forces();
 
-    Sample       before, nearest;
-    double       least_missing = std::numeric_limits<double>::max();
-    unsigned int n_solutions   = 1;
-    for (;; ++n_solutions)
+    // The residual is what is left of the loads; the force of what holds the
+    // body is opposite to it.
+    const auto sample = [&]() {
+      Sample now = {
+        positions(),
+        sums_over(dofs, report.residual, communicator),
+        wanted,
+        u,
+        contact_tractions(discretization.contact(), report.residual, state)};
+      now.forces *= -1.;
+      now.missing -= now.forces;
+      return now;
+    };
+    const auto solve_at = [&](const Vector<double> &s, const Sample &guess) {
+      move_to(s);
+      discretization.update_prescribed_values();
+      u     = guess.displacement;
+      state = make_initial_guess(discretization, u, guess.tractions);
+      SolverReport next = solve_once();
+      next.add_earlier(report);
+      next.costs = phase_costs(communicator) - costs_before;
+      report     = std::move(next);
+      ++n_solutions;
+      return sample();
+    };
+
+    Sample       best           = sample(), other;
+    double       damping        = 1.;
+    unsigned int n_rejected     = 0;
+    bool         by_differences = false;
+    while (report.converged &&
+           best.missing.linfty_norm() > tolerance *
+               std::max(wanted.linfty_norm(), best.forces.linfty_norm()))
       {
-        if (!report.converged)
-          return report;
-        Sample now = {
-          positions(), sums_over(dofs, report.residual, communicator), u};
-        // The residual is what is left of the loads; the force of what holds
-        // the body is opposite to it.
-        now.forces *= -1.;
-        Vector<double> missing = wanted;
-        missing -= now.forces;
-        if (n_solutions > 1)
-          learn(before, now);
-        const double unit =
-          std::max(wanted.linfty_norm(), now.forces.linfty_norm());
-        if (missing.linfty_norm() <= tolerance * unit)
-          return report;
-        if (missing.linfty_norm() < least_missing)
-          {
-            least_missing = missing.linfty_norm();
-            nearest       = now;
-          }
         Vector<double> step(controls.size());
-        compliance.vmult(step, missing);
-        Vector<double> next = now.positions;
+        compliance.vmult(step, best.missing);
+        step *= damping;
+        Vector<double> next = best.positions;
         next += step;
-        if (n_solutions == maximum_solutions ||
+        if (n_solutions >= maximum_solutions ||
             next.linfty_norm() > discretization.body_size())
-          give_up(nearest);
-        move_to(next);
-        discretization.update_prescribed_values();
+          give_up(best);
 
         // The guess: what the last change of a single position has changed,
         // once more. On a mesh for the first time only the platen is moved.
+        Sample guess = best;
         if (n_solutions > 1 && controls.size() == 1)
           {
             const double factor =
-              step[0] / (now.positions[0] - before.positions[0]);
+              step[0] / (best.positions[0] - other.positions[0]);
             for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-              u.local_element(i) += factor *
-                (now.displacement.local_element(i) -
-                 before.displacement.local_element(i));
+              guess.displacement.local_element(i) += factor *
+                (best.displacement.local_element(i) -
+                 other.displacement.local_element(i));
           }
-        state = make_initial_guess(
-          discretization,
-          u,
-          contact_tractions(discretization.contact(), report.residual, state));
-        before                = std::move(now);
-        SolverReport next_one = solve_once();
-        next_one.add_earlier(report);
-        next_one.costs = phase_costs(communicator) - costs_before;
-        report         = std::move(next_one);
+        Sample     now = solve_at(next, guess);
+        const bool is_better =
+          now.missing.linfty_norm() < .9 * best.missing.linfty_norm();
+        if (is_better || !by_differences)
+          learn(best, now);
+        if (is_better)
+          {
+            other          = std::move(best);
+            best           = std::move(now);
+            damping        = 1.;
+            n_rejected     = 0;
+            by_differences = false;
+            continue;
+          }
+
+        // One position alone is enclosed by what has been tried. Several may go
+        // astray where friction hardly bears more: then the derivative at the
+        // best point is asked for, and steps are shortened until they help.
+        other = std::move(now);
+        if (by_differences)
+          damping /= 2.;
+        else if (controls.size() > 1 && ++n_rejected > 2 &&
+                 best.forces.linfty_norm() > 1e-9 * wanted.linfty_norm())
+          {
+            const double    h = .01 * step.linfty_norm();
+            Eigen::MatrixXd stiffness(controls.size(), controls.size());
+            for (unsigned int j = 0; j < controls.size() && report.converged;
+                 ++j)
+              {
+                Vector<double> nearby = best.positions;
+                nearby[j] += h;
+                const Sample there = solve_at(nearby, best);
+                for (unsigned int i = 0; i < controls.size(); ++i)
+                  stiffness(i, j) = (there.forces[i] - best.forces[i]) / h;
+              }
+            const Eigen::MatrixXd inverse =
+              stiffness.completeOrthogonalDecomposition().pseudoInverse();
+            for (unsigned int i = 0; i < controls.size(); ++i)
+              for (unsigned int j = 0; j < controls.size(); ++j)
+                compliance(i, j) = inverse(i, j);
+            by_differences = true;
+          }
       }
+    return report;
   }
 
 

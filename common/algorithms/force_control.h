@@ -61,7 +61,7 @@ namespace Friction
      * @return the report of the last solution, with the cycles of all. If one
      * of them has not converged, it is the last.
      *
-     * Throws InputError if thirty solutions are not enough, or if a platen
+     * Throws InputError if sixty solutions are not enough, or if a platen
      * would have to be moved farther than the body is large. Collective.
      */
     SolverReport solve(Discretization<dim>                 &discretization,
@@ -90,8 +90,8 @@ namespace Friction
     // A position, and what holds the platens there.
     struct Sample
     {
-      Vector<double> positions, forces;
-      VectorType     displacement;
+      Vector<double> positions, forces, missing;
+      VectorType     displacement, tractions;
     };
 
     Scene<dim>          &scene;

@@ -280,7 +280,7 @@ def ceiling(**overrides):
 
 D, T, P, N = ('Boundary conditions/Displacement', 'Boundary conditions/Traction',
               'Boundary conditions/Pinned points', 'Contact/Contact normal')
-B = 'Boundary conditions/Body force'
+B, G = 'Boundary conditions/Body force', 'Boundary conditions/Force'
 
 # (number in the list of findings that it belongs to, name, scene, overrides,
 #  what is expected, patterns)
@@ -383,6 +383,26 @@ CASES = [
      ['the largest displacement is 3 ', 'away from the obstacle, or inside']),
     (4, 'large displacement', 'moved', {D: '3: 1, -0.01'}, 'warning',
      ['the largest displacement is 1 ']),
+    # Forces that are given.
+    (0, 'a force', 'moved', {G: '3: free, -0.02'}, 'good', []),
+    (0, 'a force, and no displacement to begin with', 'moved', {G: '1: free, -0.02'},
+     'error', ["boundary 1: 'Displacement' does not say where it begins"]),
+    (0, 'a force of a component that is free', 'pressed', {G: '0: free, -0.01'},
+     'error', ["'Displacement' leaves component 2 free"]),
+    (0, 'a force that varies', 'moved', {G: '3: free, -0.02*x'}, 'error',
+     ['a total force cannot depend on the place']),
+    (0, 'a force with a component too many', 'moved', {G: '3: free, -0.02, 0'}, 'error',
+     ['needs 2 components, but has 3|2 components']),
+    (0, 'two forces on a boundary', 'moved', {G: '3: free, -0.02; 3: 0, free'}, 'error',
+     ['is there twice']),
+    (0, 'a force in a turned scene', 'moved',
+     {G: '3: free, -0.02', 'Scene/Rotation angle': '90',
+      'Obstacle/Point': '0, 0', 'Obstacle/Normal': '0, -1'}, 'error',
+     ['leaves a component free']),
+    (0, 'a force that pulls', 'moved', {G: '3: free, 0.02'}, 'error',
+     ['cannot be reached.*component 2 on boundary 3']),
+    (0, 'a force that friction cannot bear', 'moved', {G: '3: 0.01, -0.02'}, 'error',
+     ['cannot be reached.*component 1 on boundary 3']),
     # 5. Meshes.
     (5, 'folded cell', 'mesh', mesh('folded'), 'error',
      [r'folded quadrilateral number 5 around \(0.3, 0.3\)']),

@@ -97,8 +97,13 @@ def check_normals(verdict, found, exact):
     for contact in level.contacts:
         own = level.of_contact(contact)
         if contact.contact_normal == "obstacle":
-            _, towards = contact.obstacle.nearest(found.x[own],
-                                                  boundary.normal[nodes[own]])
+            x, outward = found.x[own], boundary.normal[nodes[own]]
+            _, towards = contact.obstacle.nearest(x, outward)
+            # Normals of faces are not quite those of the body, which may face the
+            # obstacle only just.
+            unclear = np.linalg.norm(towards, axis=1) == 0
+            _, towards[unclear] = contact.obstacle.nearest(x[unclear], outward[unclear],
+                                                           0.)
             # Where a node is held in some directions, in those that are left.
             towards = np.where(level.is_prescribed[nodes[own]], 0, towards)
             towards /= np.maximum(np.linalg.norm(towards, axis=1), 1e-300)[:, None]

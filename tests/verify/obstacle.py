@@ -51,10 +51,10 @@ class Obstacle:
             gap = np.minimum(gap, surface.gap(x, n, FLATTEST))
         return gap
 
-    def nearest(self, x, outward):
+    def nearest(self, x, outward, flattest=FLATTEST):
         """The distance of points x from it, negative inside, and unit vectors towards
         the nearest plane or axis that a body with these normals faces, however long
-        rods are."""
+        rods are; zeros where there is none."""
         smallest = np.full(len(x), np.inf)
         normals = np.zeros(x.shape)
         pieces = [((point - x) @ normal, np.tile(normal, (len(x), 1)))
@@ -67,7 +67,7 @@ class Obstacle:
             pieces.append((side * (norm - radius),
                            side * to_axis / np.where(norm > 0, norm, 1)[:, None]))
         for distance, direction in pieces:
-            nearer = (distance < smallest) & (np.sum(direction * outward, axis=1) > .05)
+            nearer = (distance < smallest) & (np.sum(direction * outward, axis=1) > flattest)
             smallest[nearer], normals[nearer] = distance[nearer], direction[nearer]
         return smallest, normals
 

@@ -38,6 +38,7 @@ RUNS = {
     "mindlin": (2, ["Refinement/Maximum dofs=1000", "Load steps/Times=0, 4, 8"]),
     "crossing-rods": (3, ["Refinement/Maximum dofs=1500"]),
     "half-ball": (3, ["Refinement/Maximum dofs=300"]),
+    "inclined": (2, ["Refinement/Levels=1", "Load steps/Times=0.5"]),
 }
 
 failures = 0
@@ -258,10 +259,10 @@ def change_mesh(level, _):
 
 
 def check_changes(cases):
-    hertz, rods, tresca, ice, patch, mean, wheel, wall, mindlin = (
+    hertz, rods, tresca, ice, patch, mean, wheel, wall, mindlin, inclined = (
         cases[name] for name in ("hertz", "crossing-rods", "tresca", "ice", "stick-slip",
-                                 "incompressible", "wheel", "wall",
-                                 "mindlin"))
+                                 "incompressible", "wheel", "wall", "mindlin",
+                                 "inclined"))
     deep = {case.name: 1e-4 * np.abs(case.level.displacement).max()
             for case in cases.values()}
     for case in (hertz, rods, tresca):
@@ -320,6 +321,10 @@ def check_changes(cases):
     mindlin.expect("slip from elsewhere", move_slip_origin, ["slip", "states"])
     mindlin.expect("slip from elsewhere, given", move_slip_origin, ["given"])
     mindlin.expect("another time", scale("time", 1.5), ["given"])
+    entry = "Boundary conditions/Force"
+    inclined.scene.entries[entry] = inclined.scene.entries[entry].replace(
+        "G*cos", "1.0001*G*cos")
+    inclined.expect("the platen's force is another one", lambda *_: None)
     mean.expect("a body force", change_body_force, ["equilibrium"])
     mean.expect("pointwise volumetric strain",
                 scale_materials(2, 0.),

@@ -1,0 +1,78 @@
+// The scene ball-on-ball against Hertz's law for two balls: with 1/R = 1/R1 +
+// 1/R2 and a force P, the radius of contact is a = (3 P R/(4 E*))^(1/3), the
+// largest pressure 3 P/(2 pi a^2), and the approach d = a^2/R. What the platen
+// moves is the approach and what the rest of the body gives way, in proportion
+// to the force: (s - d)/P is the same for all forces, up to higher powers of
+// a/R.
+
+#include <common/algorithms/nested_iteration.h>
+#include <common/contact/contact_forces.h>
+
+#include <iostream>
+
+#include <tests/support/check.h>
+#include <tests/support/discretized.h>
+
+using namespace Tests;
+
+int
+main(int argc, char **argv)
+{
+  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  // Another mesh than that of the test, for more digits.
+  const std::string  size = argc > 1 ? argv[1] : "Refinement/Maximum dofs=5000";
+  NestedIteration<3> nest(without_safeguards(
+    read_parameters(SCENES_3D_DIR "/ball-on-ball.prm", {size})));
+  const double       R = 2. / 3, E = 1 / (1 - .3 * .3), start = .01;
+
+  double pressure_error = 0, least = 1e300, most = -1e300, largest_way = 0,
+         largest_force        = 0;
+  unsigned int most_solutions = 0, n_steps = 0;
+  bool         converged = true;
+  const auto   add_step  = [&]() {
+    ++n_steps;
+    converged      = converged && nest.report().converged;
+    most_solutions = std::max(most_solutions, nest.report().outer_iterations);
+    double P = 0, p = 0;
+    for (const ContactNode<3> &node : nest.discretization().contact())
+      {
+        const double force =
+          -contact_force(node, nest.report().residual) * node.normal();
+        P += force * -node.normal()[2];
+        p = std::max(p, force / node.measure);
+      }
+    const double a = std::cbrt(3 * P * R / (4 * E)), d = a * a / R;
+    const double s =
+      start - (*nest.scene().dirichlet_conditions()[0].platen->position)[2];
+    pressure_error = std::max(
+      pressure_error, std::abs(p / (1.5 * P / (numbers::PI * a * a)) - 1));
+    least         = std::min(least, (s - d) / P);
+    most          = std::max(most, (s - d) / P);
+    largest_way   = std::max(largest_way, s);
+    largest_force = std::max(largest_force, P);
+    if (argc > 1)
+      std::cout << "P " << P << ", a " << a << ", p " << p << ", s " << s
+                << ", d " << d << ", (s-d)/P " << (s - d) / P << std::endl;
+  };
+
+  nest.begin();
+  do
+    nest.solve();
+  while (nest.advance());
+  add_step();
+  while (nest.begin_next_load_step())
+    {
+      nest.solve();
+      add_step();
+    }
+  check(converged && n_steps == 4, "four forces");
+  check_below(std::abs(largest_force / .0021978 - 1),
+              2e-3,
+              "the obstacle exerts the force of the platen");
+  check_below(
+    pressure_error, argc > 1 ? .005 : .04, "the largest pressure is Hertz's");
+  check_below((most - least) * largest_force / largest_way,
+              argc > 1 ? .012 : .05,
+              "the platen's way is Hertz's approach and a part in proportion");
+  check_below(most_solutions, 6, "few solutions for each force");
+}
