@@ -5,10 +5,15 @@
 #include <common/parallel/reductions.h>
 #include <common/parameters/wrong_number.h>
 
+#include <deal.II/base/geometry_info.h>
+
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <set>
 #include <sstream>
 
 namespace Friction
@@ -19,6 +24,41 @@ namespace Friction
 
     // By what factor the compliance may grow in one step, and a step with it.
     constexpr double growth = 10.;
+
+    // A trial that does not converge is taken back in part, so many times.
+    constexpr unsigned int maximum_retreats = 3;
+
+
+
+    // Where a single position is, as far as it is known: the force grows with
+    // it.
+    class Bracket
+    {
+    public:
+      void
+      add(const double position, const double missing)
+      {
+        if (missing > 0)
+          lower = std::max(lower, position);
+        else
+          upper = std::min(upper, position);
+      }
+
+      // The position to be tried next: the one that is proposed, unless it is
+      // outside, or proposals have not been of use.
+      double
+      next(const double proposed, const bool is_useless) const
+      {
+        const bool is_closed = std::isfinite(lower) && std::isfinite(upper);
+        const bool is_inside = proposed > lower && proposed < upper;
+        return is_closed && (!is_inside || is_useless) ? .5 * (lower + upper)
+                                                       : proposed;
+      }
+
+    private:
+      double lower = -std::numeric_limits<double>::infinity(),
+             upper = std::numeric_limits<double>::infinity();
+    };
   } // namespace
 
 
@@ -38,10 +78,10 @@ namespace Friction
 
 
   template <int dim>
-  Vector<double>
+  Eigen::VectorXd
   ForceControl<dim>::positions() const
   {
-    Vector<double> s(controls.size());
+    Eigen::VectorXd s(controls.size());
     for (unsigned int j = 0; j < controls.size(); ++j)
       s[j] = (*scene.dirichlet_conditions()[controls[j].condition]
                  .platen->position)[controls[j].component];
@@ -52,7 +92,7 @@ namespace Friction
 
   template <int dim>
   void
-  ForceControl<dim>::move_to(const Vector<double> &s)
+  ForceControl<dim>::move_to(const Eigen::VectorXd &s)
   {
     for (unsigned int j = 0; j < controls.size(); ++j)
       {
@@ -67,10 +107,10 @@ namespace Friction
 
 
   template <int dim>
-  Vector<double>
+  Eigen::VectorXd
   ForceControl<dim>::given_forces() const
   {
-    Vector<double> forces(controls.size());
+    Eigen::VectorXd forces(controls.size());
     for (unsigned int j = 0; j < controls.size(); ++j)
       forces[j] = scene.dirichlet_conditions()[controls[j].condition]
                     .platen->force->value(Point<dim>(), controls[j].component);
@@ -79,18 +119,54 @@ namespace Friction
 
 
 
+  // A node that an earlier condition holds would not move with the platen.
   template <int dim>
-  std::vector<std::vector<unsigned int>>
+  typename ForceControl<dim>::PlatenDofs
   ForceControl<dim>::find_dofs(const Discretization<dim> &discretization) const
   {
-    const std::vector<unsigned int> holders = find_holders(discretization);
-    std::vector<std::vector<unsigned int>> dofs(controls.size());
-    for (unsigned int i = 0; i < holders.size(); ++i)
-      for (unsigned int j = 0; j < controls.size(); ++j)
-        if (holders[i] == controls[j].condition &&
-            i % dim == controls[j].component &&
-            !discretization.constraints().is_hanging(i / dim))
-          dofs[j].push_back(i);
+    const NodalConstraints<dim>    &constraints = discretization.constraints();
+    const std::vector<unsigned int> holders     = find_holders(discretization);
+    const auto                     &conditions  = scene.dirichlet_conditions();
+    std::vector<std::set<unsigned int>> own(controls.size());
+    std::vector<double>                 n_held(2 * controls.size(), 0.);
+    for (const auto &cell :
+         discretization.dof_handler().active_cell_iterators())
+      if (!cell->is_artificial() && cell->at_boundary())
+        for (const unsigned int f : cell->face_indices())
+          for (unsigned int j = 0; j < controls.size(); ++j)
+            if (cell->at_boundary(f) &&
+                cell->face(f)->boundary_id() ==
+                  conditions[controls[j].condition].boundary_id)
+              for (unsigned int v = 0; v < cell->face(f)->n_vertices(); ++v)
+                {
+                  const unsigned int node =
+                    constraints.node_of_dof(cell->vertex_dof_index(
+                      GeometryInfo<dim>::face_to_cell_vertices(f, v), 0));
+                  if (node < constraints.n_owned_nodes() &&
+                      !constraints.is_hanging(node))
+                    own[j].insert(dim * node + controls[j].component);
+                }
+
+    PlatenDofs dofs(controls.size());
+    for (unsigned int j = 0; j < controls.size(); ++j)
+      for (const unsigned int i : own[j])
+        if (holders[i] == controls[j].condition)
+          {
+            dofs[j].push_back(i);
+            n_held[2 * j] = 1;
+          }
+        else
+          n_held[2 * j + 1] = 1;
+    max_over_processes(n_held, constraints.communicator());
+    for (unsigned int j = 0; j < controls.size(); ++j)
+      if (n_held[2 * j] == 0 || n_held[2 * j + 1] > 0)
+        throw InputError(
+          scene.subject() + "'Boundary conditions/Force', boundary " +
+          std::to_string(conditions[controls[j].condition].boundary_id) +
+          ": a part of it has its displacement in component " +
+          std::to_string(controls[j].component + 1) +
+          " from another boundary or point, so that it cannot be moved as a "
+          "whole; leave that component 'free' there.");
     return dofs;
   }
 
@@ -99,12 +175,12 @@ namespace Friction
   namespace
   {
     // Of the values of v at these degrees of freedom, on all processes.
-    Vector<double>
+    Eigen::VectorXd
     sums_over(const std::vector<std::vector<unsigned int>> &dofs,
               const VectorType                             &v,
               const MPI_Comm                                communicator)
     {
-      Vector<double> sums(dofs.size());
+      Eigen::VectorXd sums(dofs.size());
       for (unsigned int j = 0; j < dofs.size(); ++j)
         {
           double sum = 0;
@@ -113,6 +189,26 @@ namespace Friction
           sums[j] = sum_over_processes(sum, communicator);
         }
       return sums;
+    }
+
+
+
+    // The force of the obstacles, and that of the loads: what the body bears
+    // besides the reactions of platens.
+    template <int dim>
+    double
+    other_forces(const Discretization<dim> &discretization,
+                 const VectorType          &residual)
+    {
+      std::array<double, 2> sums{};
+      for (const ContactNode<dim> &node : discretization.contact())
+        sums[0] += contact_force(node, residual).norm();
+      const VectorType &loads = discretization.loads();
+      for (unsigned int i = 0; i < loads.locally_owned_size(); ++i)
+        sums[1] += std::abs(loads.local_element(i));
+      sums =
+        sum_over_processes(sums, discretization.constraints().communicator());
+      return std::max(sums[0], sums[1]);
     }
   } // namespace
 
@@ -123,24 +219,20 @@ namespace Friction
   template <int dim>
   void
   ForceControl<dim>::begin_with_stiffness_of_body(
-    const Discretization<dim>                    &discretization,
-    const std::vector<std::vector<unsigned int>> &dofs)
+    const Discretization<dim> &discretization, const PlatenDofs &dofs)
   {
-    FullMatrix<double> stiffness(controls.size());
-    VectorType         e = discretization.vector(), Ae = e;
+    Eigen::MatrixXd stiffness(controls.size(), controls.size());
+    VectorType      e = discretization.vector(), Ae = e;
     for (unsigned int j = 0; j < controls.size(); ++j)
       {
         e = 0.;
         for (const unsigned int i : dofs[j])
           e.local_element(i) = 1.;
         discretization.stiffness().vmult(Ae, e);
-        const Vector<double> column =
+        stiffness.col(j) =
           sums_over(dofs, Ae, discretization.constraints().communicator());
-        for (unsigned int i = 0; i < controls.size(); ++i)
-          stiffness(i, j) = column[i];
       }
-    compliance.reinit(controls.size(), controls.size());
-    compliance.invert(stiffness);
+    compliance = stiffness.inverse();
   }
 
 
@@ -152,27 +244,19 @@ namespace Friction
   void
   ForceControl<dim>::learn(const Sample &before, const Sample &now)
   {
-    Vector<double> step = now.positions, change = now.forces;
-    step -= before.positions;
-    change -= before.forces;
-    const double length = step.norm_sqr();
+    const Eigen::VectorXd step   = now.positions - before.positions;
+    const double          length = step.squaredNorm();
     if (length == 0.)
       return;
-    Vector<double> predicted(controls.size()), row(controls.size());
-    compliance.vmult(predicted, change);
-    const double ratio = (step * predicted) / length;
+    Eigen::VectorXd predicted = compliance * (now.forces - before.forces);
+    const double    ratio     = step.dot(predicted) / length;
     if (ratio < 1. / growth)
       {
         const double damping = (1. - 1. / growth) / (1. - ratio);
-        predicted *= damping;
-        predicted.add(1. - damping, step);
+        predicted            = damping * predicted + (1. - damping) * step;
       }
-    const double divisor = step * predicted;
-    compliance.Tvmult(row, step);
-    step -= predicted;
-    for (unsigned int i = 0; i < controls.size(); ++i)
-      for (unsigned int j = 0; j < controls.size(); ++j)
-        compliance(i, j) += step[i] * row[j] / divisor;
+    const Eigen::RowVectorXd row = step.transpose() * compliance;
+    compliance += (step - predicted) * row / step.dot(predicted);
   }
 
 
@@ -216,27 +300,32 @@ namespace Friction
 
     const MPI_Comm   communicator = discretization.constraints().communicator();
     const PhaseCosts costs_before = phase_costs(communicator);
-    SolverReport     report       = solve_once();
-    unsigned int     n_solutions  = 1;
-    const auto       dofs         = find_dofs(discretization);
-    if (compliance.empty())
+    const PlatenDofs dofs         = find_dofs(discretization);
+    const double     body_size    = discretization.body_size();
+    const unsigned int n          = controls.size();
+    if (compliance.size() == 0)
       begin_with_stiffness_of_body(discretization, dofs);
-    wanted = given_forces();
+    wanted                   = given_forces();
+    SolverReport report      = solve_once();
+    unsigned int n_solutions = 1;
 
     // The residual is what is left of the loads; the force of what holds the
     // body is opposite to it.
     const auto sample = [&]() {
-      Sample now = {
+      const Eigen::VectorXd forces =
+        -sums_over(dofs, report.residual, communicator);
+      return Sample{
         positions(),
-        sums_over(dofs, report.residual, communicator),
-        wanted,
+        forces,
+        wanted - forces,
         u,
-        contact_tractions(discretization.contact(), report.residual, state)};
-      now.forces *= -1.;
-      now.missing -= now.forces;
-      return now;
+        contact_tractions(discretization.contact(), report.residual, state),
+        std::max({unit,
+                  wanted.cwiseAbs().maxCoeff(),
+                  forces.cwiseAbs().maxCoeff(),
+                  other_forces(discretization, report.residual)})};
     };
-    const auto solve_at = [&](const Vector<double> &s, const Sample &guess) {
+    const auto solve_at = [&](const Eigen::VectorXd &s, const Sample &guess) {
       move_to(s);
       discretization.update_prescribed_values();
       u     = guess.displacement;
@@ -249,38 +338,51 @@ namespace Friction
       return sample();
     };
 
-    Sample       best           = sample(), other;
-    double       damping        = 1.;
-    unsigned int n_rejected     = 0;
+    if (!report.converged)
+      return report;
+    Sample       best = sample(), other = best;
+    Bracket      bracket;
+    double       damping = 1.;
+    unsigned int n_poor = 0, n_retreats = 0;
     bool         by_differences = false;
-    while (report.converged &&
-           best.missing.linfty_norm() > tolerance *
-               std::max(wanted.linfty_norm(), best.forces.linfty_norm()))
+    if (n == 1)
+      bracket.add(best.positions[0], best.missing[0]);
+    while (best.error() > tolerance * best.unit)
       {
-        Vector<double> step(controls.size());
-        compliance.vmult(step, best.missing);
-        step *= damping;
-        Vector<double> next = best.positions;
-        next += step;
+        Eigen::VectorXd step = damping * compliance * best.missing;
+        if (n == 1)
+          step[0] = bracket.next(best.positions[0] + step[0], n_poor > 1) -
+            best.positions[0];
+        if (n_retreats > 0)
+          step *= std::pow(.25, n_retreats);
+        const Eigen::VectorXd next = best.positions + step;
         if (n_solutions >= maximum_solutions ||
-            next.linfty_norm() > discretization.body_size())
+            next.cwiseAbs().maxCoeff() > body_size)
           give_up(best);
 
         // The guess: what the last change of a single position has changed,
         // once more. On a mesh for the first time only the platen is moved.
-        Sample guess = best;
-        if (n_solutions > 1 && controls.size() == 1)
+        Sample       guess  = best;
+        const double change = best.positions[0] - other.positions[0];
+        if (n == 1 && change != 0.)
+          for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
+            guess.displacement.local_element(i) += step[0] / change *
+              (best.displacement.local_element(i) -
+               other.displacement.local_element(i));
+        Sample now = solve_at(next, guess);
+
+        // Too far at once, perhaps.
+        if (!report.converged)
           {
-            const double factor =
-              step[0] / (best.positions[0] - other.positions[0]);
-            for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-              guess.displacement.local_element(i) += factor *
-                (best.displacement.local_element(i) -
-                 other.displacement.local_element(i));
+            if (++n_retreats > maximum_retreats)
+              return report;
+            continue;
           }
-        Sample     now = solve_at(next, guess);
-        const bool is_better =
-          now.missing.linfty_norm() < .9 * best.missing.linfty_norm();
+        n_retreats           = 0;
+        n_poor               = now.error() < .5 * best.error() ? 0 : n_poor + 1;
+        const bool is_better = now.error() < .9 * best.error();
+        if (n == 1)
+          bracket.add(now.positions[0], now.missing[0]);
         if (is_better || !by_differences)
           learn(best, now);
         if (is_better)
@@ -288,39 +390,40 @@ namespace Friction
             other          = std::move(best);
             best           = std::move(now);
             damping        = 1.;
-            n_rejected     = 0;
             by_differences = false;
             continue;
           }
-
-        // One position alone is enclosed by what has been tried. Several may go
-        // astray where friction hardly bears more: then the derivative at the
-        // best point is asked for, and steps are shortened until they help.
         other = std::move(now);
+
+        // Several positions may go astray where friction hardly bears more:
+        // then the derivative at the best point is asked for, and steps are
+        // shortened until they help.
         if (by_differences)
           damping /= 2.;
-        else if (controls.size() > 1 && ++n_rejected > 2 &&
-                 best.forces.linfty_norm() > 1e-9 * wanted.linfty_norm())
+        else if (n > 1 && n_poor > 2 &&
+                 best.forces.cwiseAbs().maxCoeff() > 1e-9 * best.unit)
           {
-            const double    h = .01 * step.linfty_norm();
-            Eigen::MatrixXd stiffness(controls.size(), controls.size());
-            for (unsigned int j = 0; j < controls.size() && report.converged;
-                 ++j)
+            const double h =
+              std::max(.01 * step.cwiseAbs().maxCoeff(),
+                       1e-4 * best.positions.cwiseAbs().maxCoeff());
+            Eigen::MatrixXd stiffness(n, n);
+            bool            is_known = true;
+            for (unsigned int j = 0; j < n && is_known; ++j)
               {
-                Vector<double> nearby = best.positions;
+                Eigen::VectorXd nearby = best.positions;
                 nearby[j] += h;
                 const Sample there = solve_at(nearby, best);
-                for (unsigned int i = 0; i < controls.size(); ++i)
-                  stiffness(i, j) = (there.forces[i] - best.forces[i]) / h;
+                stiffness.col(j)   = (there.forces - best.forces) / h;
+                is_known           = report.converged;
               }
-            const Eigen::MatrixXd inverse =
-              stiffness.completeOrthogonalDecomposition().pseudoInverse();
-            for (unsigned int i = 0; i < controls.size(); ++i)
-              for (unsigned int j = 0; j < controls.size(); ++j)
-                compliance(i, j) = inverse(i, j);
+            if (is_known)
+              compliance =
+                stiffness.completeOrthogonalDecomposition().pseudoInverse();
             by_differences = true;
+            n_poor         = 0;
           }
       }
+    unit = best.unit;
     return report;
   }
 
@@ -333,16 +436,14 @@ namespace Friction
   {
     if (!has_platens())
       return;
-    const auto     dofs         = find_dofs(discretization);
-    const MPI_Comm communicator = discretization.constraints().communicator();
+    const PlatenDofs dofs         = find_dofs(discretization);
+    const MPI_Comm   communicator = discretization.constraints().communicator();
     const VectorType &values = discretization.constraints().prescribed_values();
-    const Vector<double> there = sums_over(dofs, u, communicator),
-                         here  = sums_over(dofs, values, communicator);
-    Vector<double> s           = positions();
+    Eigen::VectorXd   way =
+      sums_over(dofs, u, communicator) - sums_over(dofs, values, communicator);
     for (unsigned int j = 0; j < controls.size(); ++j)
-      s[j] += (there[j] - here[j]) /
-        sum_over_processes(double(dofs[j].size()), communicator);
-    move_to(s);
+      way[j] /= sum_over_processes(double(dofs[j].size()), communicator);
+    move_to(positions() + way);
     discretization.update_prescribed_values();
   }
 
@@ -352,13 +453,8 @@ namespace Friction
   void
   ForceControl<dim>::predict()
   {
-    if (!has_platens() || compliance.empty())
-      return;
-    Vector<double> change = given_forces(), step(controls.size());
-    change -= wanted;
-    compliance.vmult(step, change);
-    step += positions();
-    move_to(step);
+    if (has_platens() && compliance.size() > 0)
+      move_to(positions() + compliance * (given_forces() - wanted));
   }
 
 

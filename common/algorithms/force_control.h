@@ -6,8 +6,7 @@
 #include <common/discretization/discretization.h>
 #include <common/scene/scene.h>
 
-#include <deal.II/lac/full_matrix.h>
-#include <deal.II/lac/vector.h>
+#include <Eigen/Core>
 
 #include <functional>
 #include <vector>
@@ -27,10 +26,12 @@ namespace Friction
    * held, $e^TAe$ with the displacement $e$ of the platen; this is far too
    * stiff, so that the first step is too short, and never too long. What is
    * learnt is kept from one mesh, and from one load step, to the next. So a
-   * fine mesh takes one or two solutions more, each from a good guess.
+   * fine mesh takes few solutions more, each from a good guess.
    *
    * A body that is not touched yet gives no resistance; steps then grow tenfold
-   * until something is met.
+   * until something is met. A single position is enclosed by what has been
+   * tried, since the force grows with it, and halved where the secant method
+   * is no good.
    */
   template <int dim>
   class ForceControl
@@ -54,15 +55,16 @@ namespace Friction
      * @param u      displacement: what solve_once solves for, and, on call, its
      *               initial guess.
      * @param state  the same of the contact nodes.
-     * @param tolerance   of a force, relative to the largest one of all
-     *                    platens.
+     * @param tolerance   of a force, relative to the largest force on the body
+     *                    that there has been.
      * @param solve_once  solves with the displacements that are prescribed now,
      *                    from the guess that @p u and @p state are.
-     * @return the report of the last solution, with the cycles of all. If one
-     * of them has not converged, it is the last.
+     * @return the report of the last solution, with the cycles of all. If it
+     * has not converged, platens, u and state are those of that attempt.
      *
-     * Throws InputError if sixty solutions are not enough, or if a platen
-     * would have to be moved farther than the body is large. Collective.
+     * Throws InputError if sixty solutions are not enough, if a platen would
+     * have to be moved farther than the body is large, or if a part of it is
+     * held by something else. Collective.
      */
     SolverReport solve(Discretization<dim>                 &discretization,
                        VectorType                          &u,
@@ -87,30 +89,38 @@ namespace Friction
       unsigned int condition, component;
     };
 
-    // A position, and what holds the platens there.
+    // What has been found with the platens in a position.
     struct Sample
     {
-      Vector<double> positions, forces, missing;
-      VectorType     displacement, tractions;
+      Eigen::VectorXd positions, forces, missing;
+      VectorType      displacement, tractions;
+
+      /// The largest force on the body, of this one and of solutions before.
+      double unit;
+
+      double
+      error() const
+      {
+        return missing.cwiseAbs().maxCoeff();
+      }
     };
+
+    // The degrees of freedom of each control on this process.
+    using PlatenDofs = std::vector<std::vector<unsigned int>>;
 
     Scene<dim>          &scene;
     std::vector<Control> controls;
-    FullMatrix<double>   compliance; // ds/dR; empty until it is known
-    Vector<double>       wanted;     // of the last solution
+    Eigen::MatrixXd      compliance; // ds/dR; empty until it is known
+    Eigen::VectorXd      wanted;     // of the last solution
+    double               unit = 0.;  // the largest force of all solutions
 
-    Vector<double> positions() const;
-    void           move_to(const Vector<double> &positions);
-    Vector<double> given_forces() const;
+    Eigen::VectorXd positions() const;
+    void            move_to(const Eigen::VectorXd &positions);
+    Eigen::VectorXd given_forces() const;
+    PlatenDofs      find_dofs(const Discretization<dim> &discretization) const;
 
-    // The nodes of each platen on this process, as numbers of degrees of
-    // freedom.
-    std::vector<std::vector<unsigned int>>
-    find_dofs(const Discretization<dim> &discretization) const;
-
-    void begin_with_stiffness_of_body(
-      const Discretization<dim>                    &discretization,
-      const std::vector<std::vector<unsigned int>> &dofs);
+    void begin_with_stiffness_of_body(const Discretization<dim> &discretization,
+                                      const PlatenDofs          &dofs);
 
     void learn(const Sample &before, const Sample &now);
 

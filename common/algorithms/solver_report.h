@@ -76,7 +76,8 @@ namespace Friction
     VectorType residual;
 
     /// Adds what an earlier solution has taken which led to this one: cycles,
-    /// outer iterations and attempts.
+    /// outer iterations and attempts. Contraction, errors and changes remain
+    /// those of this one.
     void add_earlier(const SolverReport &report);
   };
 } // namespace Friction

@@ -247,10 +247,10 @@ namespace Friction
        "Total forces on the body, 'id: F_x, F_y', in 3D 'id: F_x, F_y, F_z', "
        "separated by ';'. Each component is an expression without "
        "coordinates, or 'free' [force]. That part of the boundary is then a "
-       "rigid "
-       "platen: it is moved in this direction, without turning, until what "
-       "holds it exerts this force. 'Displacement' prescribes where it begins, "
-       "which should be in contact."},
+       "rigid platen: it is moved in this direction, without turning, until "
+       "what holds it exerts this force. 'Displacement' prescribes where it "
+       "begins, which should be in contact. Forces are then printed as with "
+       "'Output/Forces'."},
       {"Boundary conditions",
        "Traction",
        "",

@@ -430,6 +430,10 @@ namespace Friction
                            ", is there twice; say all about it in one "
                            "condition.");
 
+        if (text.components == std::vector<std::string>(dim, "free"))
+          throw InputError(there +
+                           ": all components are free; give a force, or leave "
+                           "this boundary out.");
         Platen<dim>              platen;
         std::vector<std::string> components = text.components;
         for (unsigned int d = 0; d < dim; ++d)
@@ -453,12 +457,17 @@ namespace Friction
         Point<dim> elsewhere;
         for (unsigned int d = 0; d < dim; ++d)
           elsewhere[d] = .7 + .4 * d;
-        for (unsigned int d = 0; d < dim; ++d)
-          if (platen.force->value(Point<dim>(), d) !=
-              platen.force->value(elsewhere, d))
-            throw InputError(there +
-                             ": a total force cannot depend on the place; for "
-                             "one that is distributed use 'Traction'.");
+        for (unsigned int step = 0; step < n_load_steps(); ++step)
+          {
+            begin_load_step(step);
+            for (unsigned int d = 0; d < dim; ++d)
+              if (platen.force->value(Point<dim>(), d) !=
+                  platen.force->value(elsewhere, d))
+                throw InputError(there +
+                                 ": a total force cannot depend on the place; "
+                                 "for one that is distributed use 'Traction'.");
+          }
+        begin_load_step(0);
 
         const unsigned int i = condition - dirichlet.begin();
         platen_positions[i]  = std::make_shared<Tensor<1, dim>>();
@@ -700,8 +709,11 @@ namespace Friction
                     {
                       const double value =
                         condition.displacement->value(pin.point, pin.component);
-                      if (std::abs(value - pin.value) >
-                          1e-8 * (std::abs(value) + std::abs(pin.value)))
+                      const bool is_moved = condition.platen != nullptr &&
+                        condition.platen->is_controlled[pin.component];
+                      if (is_moved ||
+                          std::abs(value - pin.value) >
+                            1e-8 * (std::abs(value) + std::abs(pin.value)))
                         throw InputError(
                           here +
                           "'Boundary conditions/Pinned points' and 'Boundary "

@@ -68,7 +68,7 @@ main(int argc, char **argv)
     }
   check(converged && n_steps == 4, "four forces");
   check_below(std::abs(largest_force / .0021978 - 1),
-              2e-3,
+              1e-5,
               "the obstacle exerts the force of the platen");
   check_below(
     pressure_error, argc > 1 ? .005 : .04, "the largest pressure is Hertz's");

@@ -4,9 +4,10 @@ history.h5 by name, under 'contact' those of the contact nodes."""
 
 import numpy as np
 
+from expressions import NotUnderstood
 from nodal_forces import nodal_loads
 from recomputed import Recomputed
-from scene_check import compare_with_scene
+from scene_check import boundary_id, compare_with_scene
 from verdict import ROUNDING, Verdict, relative
 
 
@@ -27,8 +28,9 @@ def verify_level(level, reported, scene, tolerance, before=None):
     check_reported_numbers(verdict, found, reported, tolerance)
     check_reported_nodes(verdict, found, reported, tolerance)
     check_reported_forces(verdict, found, reported, tolerance)
-    check_given_forces(verdict, found, scene, tolerance)
-    return verdict, compare_with_scene(verdict, level, scene, found.hanging, exact)
+    unknown = check_given_forces(verdict, found, reported, scene, tolerance)
+    return verdict, unknown + compare_with_scene(verdict, level, scene, found.hanging,
+                                                 exact)
 
 
 # What is given.
@@ -322,29 +324,48 @@ def reactions_at_nodes(found):
     return reactions
 
 
-def check_given_forces(verdict, found, scene, tolerance):
-    """What holds a platen exerts the force that the scene gives."""
+def check_given_forces(verdict, found, reported, scene, tolerance):
+    """What holds a platen exerts the force that the scene gives, and is where it is
+    said to be. Returns entries that are beyond this program."""
     level, is_taken = found.level, np.zeros(found.u.shape, bool)
     reactions = reactions_at_nodes(found)
-    platens, forces, missing = dict(scene.conditions("Boundary conditions/Force")), [], []
-    for key, components in scene.conditions("Boundary conditions/Displacement"):
-        if not platens or not key.isdigit():
-            continue
-        own = np.zeros(found.u.shape, bool)
-        own[np.unique(level.boundary_faces[level.boundary_ids == int(key)])] = [
-            c != "free" for c in components]
-        own &= ~is_taken
-        is_taken |= own
-        given = platens.get(key, [])
-        wanted = scene.vector_field(["0" if c == "free" else c for c in given],
-                                    np.zeros((1, level.dim)))[0] if given else None
-        for d, force in enumerate(given):
-            if force != "free":
-                forces += [wanted[d], reactions[own[:, d], d].sum()]
-                missing.append(abs(forces[-1] - forces[-2]))
-    if missing:
-        verdict.check(None, np.array(missing) / (np.abs(forces).max() or 1.), tolerance,
-                      "a force is not that of 'Boundary conditions/Force'")
+    platens = dict(scene.conditions("Boundary conditions/Force"))
+    unit = max(found.pressing.sum(), np.abs(nodal_loads(
+        level, level.body_force, level.traction_faces, level.tractions)).sum())
+    try:
+        for key, components in scene.conditions("Boundary conditions/Displacement"):
+            if not platens:
+                break
+            nodes = np.unique(level.boundary_faces[level.boundary_ids
+                                                   == boundary_id(key)])
+            own = np.zeros(found.u.shape, bool)
+            own[nodes] = [c != "free" for c in components]
+            own &= ~is_taken
+            is_taken |= own
+            own &= level.is_prescribed
+            given = platens.pop(key, [])
+            texts = ["0" if c == "free" else c for c in components]
+            moved = found.u - scene.vector_field(texts, level.vertices)
+            for d in [d for d, force in enumerate(given) if force != "free"]:
+                wanted = scene.vector_field(["0" if c == "free" else c for c in given],
+                                            np.zeros((1, level.dim)))[0][d]
+                force = reactions[own[:, d], d].sum()
+                unit = max(unit, abs(wanted), abs(force))
+                verdict.check(None, abs(force - wanted) / (unit or 1.), tolerance,
+                              f"the force on boundary {key} is not that of "
+                              "'Boundary conditions/Force'")
+                said = reported.get("forces", {}).get(f"platen_{key}")
+                verdict.demand(said is not None, f"history.h5 has no 'platen_{key}'")
+                if said is not None:
+                    verdict.check(None, relative(moved[own[:, d], d], said[d],
+                                                 np.abs(found.u).max()), tolerance,
+                                  f"boundary {key} is not where history.h5 says")
+        for key in platens:
+            boundary_id(key)
+            verdict.demand(False, f"boundary {key} has a force and no displacement")
+    except NotUnderstood as error:
+        return [f"'Boundary conditions/Force' ({error})"]
+    return []
 
 
 def check_reported_forces(verdict, found, reported, tolerance):

@@ -8,6 +8,13 @@ from unit_cell import corner_functions, gauss_points
 from verdict import relative
 
 
+def boundary_id(key):
+    """Names of groups are known to the mesh file only."""
+    if not key.strip().isdigit():
+        raise NotUnderstood(key)
+    return int(key)
+
+
 def compare_with_scene(verdict, level, scene, hanging, limit):
     """Whether the run has solved what its scene says. Returns entries that are beyond
     this program."""
@@ -77,12 +84,6 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
             bounds = scene.evaluate(scene[section + "/Friction bound"], nodes)
             same(section + "/Friction bound", np.broadcast_to(bounds, len(nodes)),
                  level.friction_bounds[own])
-
-    def boundary_id(key):
-        """Names of groups are known to the mesh file only."""
-        if not key.strip().isdigit():
-            raise NotUnderstood(key)
-        return int(key)
 
     def displacement():
         is_set, values = np.zeros((len(X), dim), bool), np.zeros((len(X), dim))
