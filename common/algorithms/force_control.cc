@@ -15,6 +15,7 @@
 #include <limits>
 #include <set>
 #include <sstream>
+#include <utility>
 
 namespace Friction
 {
@@ -338,6 +339,25 @@ namespace Friction
       return sample();
     };
 
+    // The derivative at a point, for which there is one solution more for each
+    // position.
+    const auto differentiate = [&](const Sample &at, const double step) {
+      const double h =
+        std::max(.01 * step, 1e-4 * at.positions.cwiseAbs().maxCoeff());
+      Eigen::MatrixXd stiffness(n, n);
+      bool            is_known = true;
+      for (unsigned int j = 0; j < n && is_known; ++j)
+        {
+          Eigen::VectorXd nearby = at.positions;
+          nearby[j] += h;
+          stiffness.col(j) = (solve_at(nearby, at).forces - at.forces) / h;
+          is_known         = report.converged;
+        }
+      if (is_known)
+        compliance =
+          stiffness.completeOrthogonalDecomposition().pseudoInverse();
+    };
+
     if (!report.converged)
       return report;
     Sample       best = sample(), other = best;
@@ -403,27 +423,28 @@ namespace Friction
         else if (n > 1 && n_poor > 2 &&
                  best.forces.cwiseAbs().maxCoeff() > 1e-9 * best.unit)
           {
-            const double h =
-              std::max(.01 * step.cwiseAbs().maxCoeff(),
-                       1e-4 * best.positions.cwiseAbs().maxCoeff());
-            Eigen::MatrixXd stiffness(n, n);
-            bool            is_known = true;
-            for (unsigned int j = 0; j < n && is_known; ++j)
-              {
-                Eigen::VectorXd nearby = best.positions;
-                nearby[j] += h;
-                const Sample there = solve_at(nearby, best);
-                stiffness.col(j)   = (there.forces - best.forces) / h;
-                is_known           = report.converged;
-              }
-            if (is_known)
-              compliance =
-                stiffness.completeOrthogonalDecomposition().pseudoInverse();
+            differentiate(best, step.cwiseAbs().maxCoeff());
             by_differences = true;
             n_poor         = 0;
           }
       }
     unit = best.unit;
+
+    // What has been learnt on a way tells little of other directions. On the
+    // first mesh the derivative costs next to nothing.
+    if (n > 1 && !std::exchange(is_learnt, true))
+      {
+        const ContactState found_state  = state;
+        SolverReport       found_report = report;
+        differentiate(best, unit * compliance.cwiseAbs().maxCoeff());
+        move_to(best.positions);
+        discretization.update_prescribed_values();
+        u                             = best.displacement;
+        state                         = found_state;
+        found_report.cycles           = report.cycles;
+        found_report.outer_iterations = report.outer_iterations;
+        report                        = std::move(found_report);
+      }
     return report;
   }
 

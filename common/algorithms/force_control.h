@@ -110,9 +110,10 @@ namespace Friction
 
     Scene<dim>          &scene;
     std::vector<Control> controls;
-    Eigen::MatrixXd      compliance; // ds/dR; empty until it is known
-    Eigen::VectorXd      wanted;     // of the last solution
-    double               unit = 0.;  // the largest force of all solutions
+    Eigen::MatrixXd      compliance;     // ds/dR; empty until it is known
+    Eigen::VectorXd      wanted;         // of the last solution
+    double               unit      = 0.; // the largest force of all solutions
+    bool                 is_learnt = false;
 
     Eigen::VectorXd positions() const;
     void            move_to(const Eigen::VectorXd &positions);
