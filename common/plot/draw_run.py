@@ -315,7 +315,7 @@ def draw_line(part, run, nodes):
                             & (line.place <= limits[1])))
     axes.set_xlabel(run.axis(line.name, "contact/gap"))
     axes.set_ylabel(run.axis("stress", "levels/max_pressure"))
-    strip(axes, line.place, nodes)
+    strip(axes, line, nodes)
     handles, _ = axes.get_legend_handles_labels()
     present = sorted(set(nodes["state"][(line.place >= limits[0])
                                         & (line.place <= limits[1])]))
@@ -330,16 +330,22 @@ def range_of(curves, shown):
     return values.min() - margin, values.max() + margin
 
 
-def strip(axes, place, nodes):
-    """States of the nodes at the bottom, each as wide as its measure."""
+def strip(axes, line, nodes):
+    """States of the nodes at the bottom, each to half of the way to its neighbours; one
+    that is alone as wide as its measure."""
     low, high = axes.get_ylim()
     axes.set_ylim(low - 0.08 * (high - low), high)
-    for state in range(3):
-        here = nodes["state"] == state
-        axes.broken_barh(list(zip(place[here] - nodes["measure"][here] / 2,
-                                  nodes["measure"][here])), (0, 0.05),
-                         transform=axes.get_xaxis_transform(),
-                         facecolors=PHASES[state], edgecolors="none", rasterized=True)
+    for piece in line.pieces:
+        piece = piece[np.argsort(line.place[piece], kind="stable")]
+        s, alone = line.place[piece], nodes["measure"][piece[0]] / 2
+        edges = (np.array([s[0] - alone, s[0] + alone]) if len(piece) == 1 else
+                 np.concatenate([s[:1], (s[1:] + s[:-1]) / 2, s[-1:]]))
+        for state in range(3):
+            here = nodes["state"][piece] == state
+            axes.broken_barh(list(zip(edges[:-1][here], np.diff(edges)[here])),
+                             (0, 0.05), transform=axes.get_xaxis_transform(),
+                             facecolors=PHASES[state], edgecolors="none",
+                             rasterized=True)
 
 
 # The contact boundary in space.
