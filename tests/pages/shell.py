@@ -32,6 +32,7 @@ LONG_STUDIES = {
     "figures-2d": "figures/quick",
     "figures-3d": "figures/quick",
     "figures-ideas": "figures-ideas/quick",
+    "gallery": "gallery/quick",
     "folders": "support/folders",
 }
 # What no test can repeat: studies of other systems and of what the tests notice, and
