@@ -13,7 +13,7 @@ import tempfile
 
 from PIL import Image
 
-WIDTH, COLOURS = 760, 96
+WIDTH, COLOURS = 760, 200
 
 
 def scenes(root):

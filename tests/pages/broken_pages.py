@@ -66,8 +66,8 @@ def main():
                 title="" if name == "untitled" else "A page"))
         Path(scratch, "picture.svg").write_text(PICTURE)
         run = subprocess.run(
-            [sys.executable, "-B", str(HERE / "check_browser.py")] + arguments
-            + [scratch], capture_output=True, text=True)
+            [sys.executable, "-B", str(HERE / "check_browser.py"), "--patience", "1"]
+            + arguments + [scratch], capture_output=True, text=True)
     print(run.stdout + run.stderr)
     wrong = []
     for name, (_, expected) in CASES.items():

@@ -88,8 +88,8 @@ def offences_of_links(links):
 
 
 class Visit:
-    def __init__(self, browser, screenshots):
-        self.browser, self.screenshots = browser, screenshots
+    def __init__(self, browser, screenshots, patience):
+        self.browser, self.screenshots, self.patience = browser, screenshots, patience
         self.offences = []
 
     def look(self, page, by_hand):
@@ -102,7 +102,7 @@ class Visit:
                     self.browser.get(page.as_uri())
                 is_loaded = True
                 found = self.browser.execute_async_script(
-                    INSPECT, screen["width"], by_hand)
+                    INSPECT, screen["width"], by_hand, self.patience)
             except TimeoutException:
                 found = ["the page is not ready after two minutes"]
             found += self.messages()
@@ -145,6 +145,8 @@ def main():
     parser.add_argument("--chromedriver", required=True)
     parser.add_argument("--all", action="store_true",
                         help="look at every generated page, not only at some")
+    parser.add_argument("--patience", type=float, default=8,
+                        help="seconds for formulas on a machine that is busy")
     parser.add_argument("--screenshots", type=Path,
                         help="where to put pictures of the pages written by hand")
     parser.add_argument("folder", type=Path, help="where index.html is")
@@ -161,7 +163,7 @@ def main():
     chosen = choose(pages, options.all)
     browser = start(options)
     try:
-        visit = Visit(browser, options.screenshots)
+        visit = Visit(browser, options.screenshots, options.patience)
         for page in chosen:
             visit.look(page, is_written_by_hand(page))
         offences += visit.offences

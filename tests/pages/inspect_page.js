@@ -1,8 +1,10 @@
 // What is wrong with the page as the browser shows it, as a list of sentences, for
 // the callback that is the last argument. The others are the width of the screen,
-// and whether the page is written by hand: Doxygen's lists have no headings.
+// whether the page is written by hand, since Doxygen's lists have no headings, and for
+// how many seconds MathJax may be late.
 const width = arguments[0];
 const isWritten = arguments[1];
+const patience = arguments[2];
 const done = arguments[arguments.length - 1];
 
 // Text that should have been made something else of: formulas, commands of
@@ -128,15 +130,15 @@ function hasRawText() {
 }
 
 // MathJax comes after the page, and is through when its queue is empty, or, on a
-// machine that is busy, has not yet put its work there; it gets eight more seconds
-// as long as there is anything left to set.
+// machine that is busy, has not yet put its work there; it gets some more seconds as
+// long as there is anything left to set.
 const waiting = document.querySelector('script[src*="MathJax.js"]');
 (function wait(turns) {
   if (!waiting)
     inspectNextFrame();
   else if (window.MathJax && MathJax.isReady)
     MathJax.Hub.Queue(() =>
-      turns > 220 && hasRawText()
+      turns > 300 - 10 * patience && hasRawText()
         ? setTimeout(wait, 100, turns - 1)
         : inspectNextFrame());
   else if (turns === 0)
