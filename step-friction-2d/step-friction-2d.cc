@@ -349,7 +349,6 @@ namespace StepFriction2d
     SafeguardedSolver<dim> solver(problem, levels, iteration, settings);
     setup_seconds = discretization.setup_seconds() + timer.wall_time();
 
-    //
     // A scene may give the total force on a part of the boundary instead of its
     // displacement. Then <code>ForceControl</code> moves this part, compares
     // its reaction with the force, and solves again; without such a part it

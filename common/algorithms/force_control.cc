@@ -5,15 +5,12 @@
 #include <common/parallel/reductions.h>
 #include <common/parameters/wrong_number.h>
 
-#include <deal.II/base/geometry_info.h>
-
 #include <Eigen/Dense>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <sstream>
 #include <utility>
 
@@ -128,36 +125,22 @@ namespace Friction
     const NodalConstraints<dim>    &constraints = discretization.constraints();
     const std::vector<unsigned int> holders     = find_holders(discretization);
     const auto                     &conditions  = scene.dirichlet_conditions();
-    std::vector<std::set<unsigned int>> own(controls.size());
-    std::vector<double>                 n_held(2 * controls.size(), 0.);
-    for (const auto &cell :
-         discretization.dof_handler().active_cell_iterators())
-      if (!cell->is_artificial() && cell->at_boundary())
-        for (const unsigned int f : cell->face_indices())
-          for (unsigned int j = 0; j < controls.size(); ++j)
-            if (cell->at_boundary(f) &&
-                cell->face(f)->boundary_id() ==
-                  conditions[controls[j].condition].boundary_id)
-              for (unsigned int v = 0; v < cell->face(f)->n_vertices(); ++v)
-                {
-                  const unsigned int node =
-                    constraints.node_of_dof(cell->vertex_dof_index(
-                      GeometryInfo<dim>::face_to_cell_vertices(f, v), 0));
-                  if (node < constraints.n_owned_nodes() &&
-                      !constraints.is_hanging(node))
-                    own[j].insert(dim * node + controls[j].component);
-                }
-
-    PlatenDofs dofs(controls.size());
+    const auto                      nodes = nodes_of_conditions(discretization);
+    PlatenDofs                      dofs(controls.size());
+    std::vector<double>             n_held(2 * controls.size(), 0.);
     for (unsigned int j = 0; j < controls.size(); ++j)
-      for (const unsigned int i : own[j])
-        if (holders[i] == controls[j].condition)
+      for (const unsigned int node : nodes[controls[j].condition])
+        if (!constraints.is_hanging(node))
           {
-            dofs[j].push_back(i);
-            n_held[2 * j] = 1;
+            const unsigned int i = dim * node + controls[j].component;
+            if (holders[i] == controls[j].condition)
+              {
+                dofs[j].push_back(i);
+                n_held[2 * j] = 1;
+              }
+            else
+              n_held[2 * j + 1] = 1;
           }
-        else
-          n_held[2 * j + 1] = 1;
     max_over_processes(n_held, constraints.communicator());
     for (unsigned int j = 0; j < controls.size(); ++j)
       if (n_held[2 * j] == 0 || n_held[2 * j + 1] > 0)

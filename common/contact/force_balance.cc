@@ -172,13 +172,12 @@ namespace Friction
 
 
   template <int dim>
-  std::vector<unsigned int>
-  find_holders(const Discretization<dim> &discretization)
+  std::vector<std::set<unsigned int>>
+  nodes_of_conditions(const Discretization<dim> &discretization)
   {
     const NodalConstraints<dim> &constraints = discretization.constraints();
     const auto &conditions = discretization.scene().dirichlet_conditions();
-    std::vector<unsigned int> holders(dim * constraints.n_owned_nodes(),
-                                      conditions.size());
+    std::vector<std::set<unsigned int>> nodes(conditions.size());
     for (const auto &cell :
          discretization.dof_handler().active_cell_iterators())
       if (!cell->is_artificial() && cell->at_boundary())
@@ -191,13 +190,27 @@ namespace Friction
                   const unsigned int node =
                     constraints.node_of_dof(cell->vertex_dof_index(
                       GeometryInfo<dim>::face_to_cell_vertices(f, v), 0));
-                  if (node >= constraints.n_owned_nodes())
-                    continue;
-                  for (unsigned int d = 0; d < dim; ++d)
-                    if (conditions[i].components[d])
-                      holders[dim * node + d] =
-                        std::min(holders[dim * node + d], i);
+                  if (node < constraints.n_owned_nodes())
+                    nodes[i].insert(node);
                 }
+    return nodes;
+  }
+
+
+
+  template <int dim>
+  std::vector<unsigned int>
+  find_holders(const Discretization<dim> &discretization)
+  {
+    const auto &conditions = discretization.scene().dirichlet_conditions();
+    std::vector<unsigned int> holders(
+      dim * discretization.constraints().n_owned_nodes(), conditions.size());
+    const auto nodes = nodes_of_conditions(discretization);
+    for (unsigned int i = 0; i < conditions.size(); ++i)
+      for (const unsigned int node : nodes[i])
+        for (unsigned int d = 0; d < dim; ++d)
+          if (conditions[i].components[d])
+            holders[dim * node + d] = std::min(holders[dim * node + d], i);
     return holders;
   }
 
@@ -295,6 +308,10 @@ namespace Friction
 
   template struct ForceBalance<2>;
   template struct ForceBalance<3>;
+  template std::vector<std::set<unsigned int>>
+  nodes_of_conditions(const Discretization<2> &);
+  template std::vector<std::set<unsigned int>>
+  nodes_of_conditions(const Discretization<3> &);
   template std::vector<unsigned int> find_holders(const Discretization<2> &);
   template std::vector<unsigned int> find_holders(const Discretization<3> &);
   template ForceBalance<2>           force_balance(const Discretization<2> &,

@@ -8,6 +8,7 @@
 #include <boost/serialization/string.hpp>
 #include <boost/serialization/vector.hpp>
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,16 @@ namespace Friction
       archive &forces;
     }
   };
+
+
+
+  /**
+   * For each Dirichlet condition the nodes of its boundary that the process
+   * owns, in increasing order; hanging ones among them.
+   */
+  template <int dim>
+  std::vector<std::set<unsigned int>>
+  nodes_of_conditions(const Discretization<dim> &discretization);
 
 
 
