@@ -77,72 +77,8 @@ namespace Friction
                                     const TruncationVariant     variant)
     : problem(problem)
     , variant(variant)
-    , current(problem.constraints)
-  {
-    find_ghosts();
-  }
-
-
-
-  template <int dim>
-  void
-  Linearization<dim>::find_ghosts()
-  {
-    const ContactBoundary<dim> &contact = problem.contact;
-    const NodeNumbering        &leaf    = problem.constraints.numbering();
-    if (leaf.distribution().n_processes() == 1)
-      return;
-
-    // Contact nodes have numbers of their own. Which of our ghosts is which of
-    // them their owners tell; zero means that it is none.
-    NodeNumbering       numbering(NodeDistribution(
-      contact.size(), leaf.distribution().shared_communicator()));
-    std::vector<double> number(leaf.size(), 0.);
-    for (unsigned int p = 0; p < contact.size(); ++p)
-      number[contact[p].node] = 1. + numbering.distribution().global(p);
-    const std::vector<unsigned int> ghosts = leaf.all_ghosts();
-    GhostExchange(leaf, ghosts).update(number.data(), 1);
-
-    std::vector<unsigned int> contact_ghosts;
-    for (const unsigned int node : ghosts)
-      if (number[node] > 0)
-        {
-          ghost_nodes.push_back(node);
-          contact_ghosts.push_back(
-            numbering.add(static_cast<GlobalNode>(number[node]) - 1));
-        }
-    exchange = GhostExchange(numbering, contact_ghosts);
-    exchanged.resize(2 * dim * dim * numbering.size());
-  }
-
-
-
-  template <int dim>
-  void
-  Linearization<dim>::exchange_decisions()
-  {
-    const ContactBoundary<dim> &contact = problem.contact;
-    if (exchange.is_empty())
-      return;
-    constexpr unsigned int n = dim * dim;
-    for (unsigned int p = 0; p < contact.size(); ++p)
-      {
-        std::copy_n(
-          current.projector(contact[p].node).begin(), n, &exchanged[2 * n * p]);
-        std::copy_n(current.curvature(contact[p].node).begin(),
-                    n,
-                    &exchanged[2 * n * p + n]);
-      }
-    exchange.update(exchanged.data(), 2 * n);
-    for (unsigned int g = 0; g < ghost_nodes.size(); ++g)
-      {
-        NodeBlock<dim> projector, curvature;
-        const double  *values = &exchanged[2 * n * (contact.size() + g)];
-        std::copy_n(values, n, projector.begin());
-        std::copy_n(values + n, n, curvature.begin());
-        current.set(ghost_nodes[g], projector, curvature);
-      }
-  }
+    , current(problem)
+  {}
 
 
 
@@ -159,24 +95,8 @@ namespace Friction
         const bool              all_is_held =
           state.in_contact(p) && variant == TruncationVariant::contact;
 
-        NodeBlock<dim> projector = zero_block<dim>();
-        const auto     add       = [&](const Tensor<1, dim> &direction) {
-          for (unsigned int c = 0; c < dim; ++c)
-            for (unsigned int r = 0; r < dim; ++r)
-              projector[c * dim + r] += direction[r] * direction[c];
-        };
-        if (!state.in_contact(p))
-          add(node.normal());
-        if (!state.sticks(p) && !all_is_held)
-          for (unsigned int t = 1; t <= node.n_free_tangents; ++t)
-            add(node.frame[t]);
-
-        // Everything free must be the identity to the last bit, so that the
-        // block is the leaf matrix's own.
-        if (!state.in_contact(p) && !state.sticks(p) &&
-            node.n_free_tangents == dim - 1)
-          projector = identity_block<dim>();
-
+        const NodeBlock<dim> projector = current.projector(
+          p, !state.in_contact(p), !state.sticks(p) && !all_is_held);
         NodeBlock<dim> curvature = zero_block<dim>();
         if (dim == 3 &&
             variant != TruncationVariant::phases_without_second_order)
@@ -189,14 +109,14 @@ namespace Friction
             if (bound > 0 && !state.sticks(p) && !all_is_held &&
                 norm_of(u_T) > 0)
               curvature = friction_curvature(node, u_T, bound, 1e8 * stiffness);
-            if (projector == current.projector(node.node) &&
+            if (projector == truncation().projector(node.node) &&
                 is_close<dim>(
-                  current.curvature(node.node), curvature, stiffness))
+                  truncation().curvature(node.node), curvature, stiffness))
               continue;
           }
-        current.set(node.node, projector, curvature);
+        current.set(p, projector, curvature);
       }
-    exchange_decisions();
+    current.exchange();
   }
 
 
@@ -223,7 +143,7 @@ namespace Friction
                     state.normal_force(p) * u_T[t - 1] / norm *
                     node.frame[t][d];
           }
-    current.apply(r.begin());
+    truncation().apply(r.begin());
   }
 
 

@@ -2,9 +2,8 @@
 #define friction_iteration_linearization_h
 
 #include <common/discretization/discrete_problem.h>
+#include <common/iteration/contact_truncation.h>
 #include <common/iteration/iterate.h>
-#include <common/nodes/truncation.h>
-#include <common/parallel/ghost_exchange.h>
 #include <common/parameters/solver_settings.h>
 
 namespace Friction
@@ -56,7 +55,7 @@ namespace Friction
     const Truncation<dim> &
     truncation() const
     {
-      return current;
+      return current.truncation();
     }
 
     /** The truncated residual of the linearised problem,
@@ -76,18 +75,7 @@ namespace Friction
   private:
     const DiscreteProblem<dim> &problem;
     const TruncationVariant     variant;
-    Truncation<dim>             current;
-
-    // Contact nodes of others that are ghosts here, and the exchange of what
-    // has been decided for them: projector and second derivative of the contact
-    // nodes of this process, and then of those ghosts.
-    std::vector<unsigned int> ghost_nodes;
-    GhostExchange             exchange;
-    std::vector<double>       exchanged;
-
-    void find_ghosts();
-
-    void exchange_decisions();
+    ContactTruncation<dim>      current;
   };
 } // namespace Friction
 
