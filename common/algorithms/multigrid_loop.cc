@@ -44,26 +44,24 @@ namespace Friction
           return false;
       return cycles.back().increment > .9 * cycles[n - 1 - window].increment;
     }
-
-
-
-    // A body that merely moves has no energy but that of rounding errors, with
-    // which no increment should be compared. The diagonal of the matrix says
-    // what energy a displacement of this size could have.
-    template <int dim>
-    double
-    smallest_norm(const DiscreteProblem<dim> &problem, const VectorType &u)
-    {
-      const NodeBlockMatrix<dim> &A   = problem.stiffness.blocks();
-      double                      sum = 0;
-      for (unsigned int i = 0; i < A.n_rows(); ++i)
-        if (A.row_begin(i) < A.row_end(i))
-          sum += trace<dim>(A.block(A.row_begin(i))) *
-            dot<dim>(u.begin() + dim * i, u.begin() + dim * i);
-      return std::max(1e-12 * sum_over_processes(sum, problem.communicator()),
-                      1e-300);
-    }
   } // namespace
+
+
+
+  template <int dim>
+  double
+  smallest_squared_norm(const DiscreteProblem<dim> &problem,
+                        const VectorType           &u)
+  {
+    const NodeBlockMatrix<dim> &A   = problem.stiffness.blocks();
+    double                      sum = 0;
+    for (unsigned int i = 0; i < A.n_rows(); ++i)
+      if (A.row_begin(i) < A.row_end(i))
+        sum += trace<dim>(A.block(A.row_begin(i))) *
+          dot<dim>(u.begin() + dim * i, u.begin() + dim * i);
+    return std::max(1e-12 * sum_over_processes(sum, problem.communicator()),
+                    1e-300);
+  }
 
 
 
@@ -80,11 +78,13 @@ namespace Friction
 
   bool
   MultigridResult::stalls(const double       tolerance,
-                          const unsigned int maximum_cycles) const
+                          const unsigned int maximum_cycles,
+                          const unsigned int patience) const
   {
-    constexpr unsigned int window = 20;
-    const unsigned int     n      = cycles.size();
-    if (n < 50)
+    Assert(patience >= 5, ExcMessage("There is nothing to compare."));
+    const unsigned int window = 2 * patience / 5;
+    const unsigned int n      = cycles.size();
+    if (n < patience)
       return false;
     const auto smallest = [&](const unsigned int end) {
       double result = cycles[end - window].increment;
@@ -155,7 +155,7 @@ namespace Friction
 
         look_at_iterate();
         if (cycle == 1)
-          floor_of_norm = smallest_norm(problem, x.u);
+          floor_of_norm = smallest_squared_norm(problem, x.u);
         const double squared_size = std::max(sums[norm], floor_of_norm);
         const double size         = std::sqrt(squared_size);
         CycleInfo   &last         = result.cycles.back();
@@ -181,16 +181,22 @@ namespace Friction
           }
         if (cycle >= limits.maximum_cycles ||
             (limits.budget && limits.budget->is_spent()) ||
-            (limits.gives_up_early &&
+            (limits.patience > 0 &&
              result.stalls(
                std::max(limits.inner_tolerance, limits.energy_tolerance / size),
-               limits.maximum_cycles)))
+               limits.maximum_cycles,
+               limits.patience)))
           break;
       }
     return result;
   }
 
 
+
+  template double smallest_squared_norm(const DiscreteProblem<2> &,
+                                        const VectorType &);
+  template double smallest_squared_norm(const DiscreteProblem<3> &,
+                                        const VectorType &);
 
   template MultigridResult run_multigrid(MonotoneMultigrid<2> &,
                                          Iterate &,

@@ -21,7 +21,8 @@ namespace Friction
     double energy;      ///< of the smoothed iterate
     double step_length; ///< step length of the coarse correction
     double truncated;   ///< components held at all contact nodes
-    double residual;    ///< Euclidean norm of the truncated residual
+    double residual;    ///< Euclidean norm of the truncated residual; with
+                        ///< Newton's method of all nodal forces that are wrong
   };
 
 
@@ -57,6 +58,13 @@ namespace Friction
       left_of_attempt -= (left_of_attempt > 0);
     }
 
+    /** For the present attempt. */
+    unsigned int
+    cycles_left() const
+    {
+      return left_of_attempt;
+    }
+
     /** By the present attempt. */
     bool
     is_spent() const
@@ -86,9 +94,10 @@ namespace Friction
 
     unsigned int maximum_cycles = 200;
 
-    /// End early if the iteration would not arrive within that many cycles;
-    /// see MultigridResult::stalls().
-    bool gives_up_early = false;
+    /// End early if the iteration would not arrive within that many cycles,
+    /// but not before this number of them, see MultigridResult::stalls(); zero:
+    /// never.
+    unsigned int patience = 0;
 
     /// Ends when these are spent; null for no such limit.
     std::shared_ptr<CycleBudget> budget;
@@ -111,15 +120,28 @@ namespace Friction
     double contraction() const;
 
     /**
-     * Whether the iteration is getting nowhere: at the pace of the last twenty
-     * cycles, measured against the twenty before, the increments would not come
-     * down to @p tolerance within @p maximum_cycles altogether. Says no as long
-     * as there are fewer than fifty cycles; contact zones may take that many to
-     * grow into place.
+     * Whether the iteration is getting nowhere: at the pace of the last cycles,
+     * two fifths of @p patience, measured against as many before, the
+     * increments would not come down to @p tolerance within @p maximum_cycles
+     * altogether. Says no as long as there are fewer cycles than @p patience;
+     * contact zones take some to grow into place.
      */
     bool stalls(const double       tolerance,
-                const unsigned int maximum_cycles) const;
+                const unsigned int maximum_cycles,
+                const unsigned int patience) const;
   };
+
+
+
+  /**
+   * A body that merely moves has no energy but that of rounding errors, with
+   * which no increment should be compared. The diagonal of the matrix says what
+   * energy a displacement of this size could have; this is the part of it that
+   * counts as rounding. Collective.
+   */
+  template <int dim>
+  double smallest_squared_norm(const DiscreteProblem<dim> &problem,
+                               const VectorType           &u);
 
 
 

@@ -74,6 +74,12 @@ namespace Friction
       return energy->discrete_problem();
     }
 
+    const MonotoneSmoother<dim> &
+    leading_smoother() const
+    {
+      return *smoother;
+    }
+
     /** The truncation of the last step, and its truncated residual. */
     const Truncation<dim> &
     truncation() const

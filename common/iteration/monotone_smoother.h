@@ -67,6 +67,13 @@ namespace Friction
     /** The same in descending order; the residual is not computed. */
     void backward(Iterate &x, const unsigned int n_sweeps) const;
 
+    /** Relaxation of all nodes that can move but are no contact nodes. */
+    const GaussSeidel<dim> &
+    relaxation_of_ordinary_nodes() const
+    {
+      return *ordinary_nodes;
+    }
+
     std::size_t
     memory_consumption() const
     {
