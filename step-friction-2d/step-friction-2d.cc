@@ -285,8 +285,8 @@ namespace StepFriction2d
     state = make_initial_guess(discretization, displacement, tractions);
 
     // What all parts refer to: stiffness, loads, constraints and contact nodes,
-    // and the law of friction. It is a copy, since continuation, the last of
-    // the safeguards, solves with smaller coefficients first.
+    // and the law of friction. It is a copy, since continuation, one of the
+    // safeguards, solves with smaller coefficients first.
     DiscreteProblem<dim> problem = discretization.problem();
     const SolverSettings settings =
       stop.settings_for(discretization.dof_handler().n_dofs());

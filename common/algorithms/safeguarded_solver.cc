@@ -14,6 +14,13 @@ namespace Friction
 {
   namespace
   {
+    // Cycles that a method may take until it has to get somewhere. Where bounds
+    // of friction react strongly to the displacement, methods with those of the
+    // moment go to and fro from the beginning.
+    constexpr unsigned int patience = 50, short_patience = 15;
+
+
+
     // Without friction, and with given bounds, there is nothing to iterate but
     // the multigrid method.
     template <int dim>
@@ -24,21 +31,6 @@ namespace Friction
         return "the multigrid iteration";
       return settings.algorithm == Algorithm::fixed_point ? "Algorithm 2"
                                                           : "Algorithm 3";
-    }
-
-
-
-    // Whether phases were still changing when an iteration ended: then it is
-    // not slow coarse corrections that it died of.
-    bool
-    phases_change(const SolverReport &report)
-    {
-      const auto  &cycles = report.cycles;
-      const auto   n      = std::min<std::size_t>(cycles.size(), 10);
-      unsigned int change = 0;
-      for (std::size_t i = cycles.size() - n + 1; i < cycles.size(); ++i)
-        change += (cycles[i].truncated != cycles[i - 1].truncated);
-      return change > 0;
     }
 
 
@@ -58,19 +50,18 @@ namespace Friction
 
 
 
-    // Notes what has been tried: its outcome, and all the cycles that it took,
-    // which may be those of several solutions.
+    // Notes what has been tried, and all the cycles that it took.
     void
-    add_attempt(SolverReport                 &all,
-                const std::string            &name,
-                const SolverReport           &outcome,
-                const std::vector<CycleInfo> &cycles)
+    add_attempt(SolverReport       &all,
+                const std::string  &name,
+                const SolverReport &outcome)
     {
       all.attempts.push_back({name,
-                              static_cast<unsigned int>(cycles.size()),
+                              static_cast<unsigned int>(outcome.cycles.size()),
                               outcome.converged,
                               outcome.certificate.largest()});
-      all.cycles.insert(all.cycles.end(), cycles.begin(), cycles.end());
+      all.cycles.insert(
+        all.cycles.end(), outcome.cycles.begin(), outcome.cycles.end());
     }
   } // namespace
 
@@ -85,11 +76,8 @@ namespace Friction
     , levels(levels)
     , iteration(iteration)
     , settings(settings)
-    , line_search(iteration.functional(),
-                  settings.maximum_step_length,
-                  settings.recombined_steps)
-    , short_steps(
-        iteration.functional(), std::min(.5, settings.maximum_step_length), 0)
+    , whole_steps(
+        iteration.functional(), std::min(1., settings.maximum_step_length), 0)
   {
     Assert(&problem == &iteration.problem(),
            ExcMessage("The iteration is that of another problem."));
@@ -97,204 +85,45 @@ namespace Friction
 
 
 
-  // Whatever an attempt is, it may give up when it is getting nowhere.
+  // What all attempts after the first have in common. They are to find a
+  // solution, to the usual tolerance.
   template <int dim>
   CoulombSettings
-  SafeguardedSolver<dim>::first_settings() const
+  SafeguardedSolver<dim>::later_settings() const
   {
     CoulombSettings result(settings);
-    result.limits.gives_up_early = true;
-    result.limits.budget         = budget;
-    return result;
-  }
-
-
-
-  // What all other attempts have in common. They are to find a solution, to the
-  // usual tolerance.
-  template <int dim>
-  CoulombSettings
-  SafeguardedSolver<dim>::fallback_settings() const
-  {
-    CoulombSettings result         = first_settings();
     result.limits.energy_tolerance = 0.;
+    result.limits.patience         = patience;
+    result.limits.budget           = budget;
     return result;
   }
 
 
 
+  // Whole steps at most, each of its own direction: a line search works with
+  // the normal forces of the moment and may go too far for those that come.
   template <int dim>
   MonotoneMultigrid<dim>
-  SafeguardedSolver<dim>::best_iteration()
+  SafeguardedSolver<dim>::without_levels()
   {
-    MonotoneMultigrid<dim> result = iteration.with(line_search);
-    if (settings.truncation != TruncationVariant::phases)
-      {
-        if (!phases)
-          phases = std::make_unique<Linearization<dim>>(
-            problem, TruncationVariant::phases);
-        result = result.with(*phases);
-      }
-    if (settings.coarse_correction != CoarseCorrection::truncated)
-      {
-        if (!truncated)
-          truncated = std::make_unique<TruncatedCorrection<dim>>(
-            levels, settings.cycle, settings.coarse_smoothing_steps);
-        result = result.with(*truncated);
-      }
-    return result;
-  }
-
-
-
-  template <int dim>
-  Correction<dim> &
-  SafeguardedSolver<dim>::algebraic_correction()
-  {
+    if (!phases)
+      phases = std::make_unique<Linearization<dim>>(problem,
+                                                    TruncationVariant::phases);
     if (!algebraic)
       algebraic = std::make_unique<AlgebraicCorrection<dim>>(
         problem, settings.coarsest_method);
-    return *algebraic;
+    return iteration.with(*phases).with(*algebraic).with(whole_steps);
   }
 
 
 
   template <int dim>
   SolverReport
-  SafeguardedSolver<dim>::attempt(const std::string      &name,
-                                  MonotoneMultigrid<dim> &with_iteration,
-                                  const CoulombSettings  &with_settings,
-                                  const Search           &search) const
+  SafeguardedSolver<dim>::algebraic_corrections(const Search &search)
   {
-    const VectorType   start       = search.u;
-    const ContactState start_state = search.state;
-    SolverReport report = CoulombSolver<dim>(with_iteration, with_settings)
-                            .solve(search.u, search.state, search.progress);
-    add_attempt(search.all, name, report, report.cycles);
-    if (!is_finite(search.u, search.state, problem.communicator()))
-      {
-        search.u     = start;
-        search.state = start_state;
-      }
-    return report;
-  }
-
-
-
-  template <int dim>
-  SolverReport
-  SafeguardedSolver<dim>::solve(VectorType     &u,
-                                ContactState   &state,
-                                const Progress &progress)
-  {
-    const RunScope part(problem.communicator(), RunPart::solution);
-    if (!settings.safeguards)
-      return CoulombSolver<dim>(iteration, CoulombSettings(settings))
-        .solve(u, state, progress);
-
-    budget = std::make_shared<CycleBudget>(settings.total_cycles);
-    budget->begin_attempt();
-    const PhaseCosts   before        = phase_costs(problem.communicator());
-    const bool         coulomb       = problem.has_coulomb_friction();
-    const VectorType   initial       = u;
-    const ContactState initial_state = state;
-    const std::string  name          = name_of(problem, settings);
-    SolverReport       all;
-    const Search       search = {u, state, all, progress};
-    SolverReport report = attempt(name, iteration, first_settings(), search);
-
-    // If nothing succeeds, what violates the law least is returned.
-    double       smallest_violation = std::numeric_limits<double>::infinity();
-    VectorType   best_u;
-    ContactState best_state(0, false);
-    const auto   keep_best = [&](const VectorType   &other,
-                               const ContactState &other_state) {
-      const double violation = report.certificate.largest();
-      if (report.converged || !(violation < smallest_violation))
-        return;
-      smallest_violation = violation;
-      best_u             = other;
-      best_state         = other_state;
-    };
-    keep_best(u, state);
-
-    if (!report.converged)
-      {
-        // Shorter steps, each of its own direction: a line search works with
-        // the normal forces of the moment and may go too far for those that
-        // come.
-        MonotoneMultigrid<dim> cautious = best_iteration().with(short_steps);
-        // Where only the outer iteration of Algorithm 2 has failed, neither of
-        // the two attempts that follow would be any better.
-        const bool outer_failure = coulomb && report.inner_converged &&
-          settings.algorithm == Algorithm::fixed_point;
-        bool slow_corrections =
-          !outer_failure && (!coulomb || !phases_change(report));
-        if (!slow_corrections && !outer_failure && budget->begin_attempt())
-          {
-            report           = attempt(name + " with short steps",
-                             cautious,
-                             fallback_settings(),
-                             search);
-            slow_corrections = !phases_change(report);
-            keep_best(u, state);
-          }
-        if (!report.converged && slow_corrections && budget->begin_attempt())
-          {
-            LineSearch<dim> whole_steps(
-              iteration.functional(),
-              std::min(1., settings.maximum_step_length),
-              0);
-            MonotoneMultigrid<dim> without_levels =
-              cautious.with(algebraic_correction()).with(whole_steps);
-            report = attempt(name + " with algebraic corrections",
-                             without_levels,
-                             fallback_settings(),
-                             search);
-            keep_best(u, state);
-          }
-      }
-    if (!report.converged && coulomb && budget->begin_attempt())
-      {
-        report = mixed_algorithm_2(search);
-        keep_best(u, state);
-      }
-    // The last two start anew, and what they have got to is of no use if they
-    // do not arrive.
-    const auto start_anew = [&](const auto &method) {
-      VectorType   other       = initial;
-      ContactState other_state = initial_state;
-      report                   = method({other, other_state, all, progress});
-      if (report.converged)
-        {
-          u     = other;
-          state = other_state;
-        }
-    };
-    if (!report.converged && coulomb && budget->begin_attempt())
-      start_anew(
-        [&](const Search &other) { return careful_algorithm_2(other); });
-    if (!report.converged && coulomb && budget->begin_attempt(true))
-      start_anew([&](const Search &other) { return continuation(other); });
-
-    if (all.attempts.size() > 1)
-      {
-        // What is reported of a failure is what is returned, and not the end of
-        // an attempt that has been thrown away.
-        if (!report.converged)
-          {
-            if (std::isfinite(smallest_violation))
-              {
-                u     = best_u;
-                state = best_state;
-              }
-            certify(report, iteration.functional(), u, state);
-          }
-        report.cycles   = all.cycles;
-        report.attempts = all.attempts;
-        report.costs    = phase_costs(problem.communicator()) - before;
-      }
-    return report;
+    MonotoneMultigrid<dim> best = without_levels();
+    return CoulombSolver<dim>(best, later_settings())
+      .solve(search.u, search.state, search.progress);
   }
 
 
@@ -303,78 +132,88 @@ namespace Friction
   SolverReport
   SafeguardedSolver<dim>::mixed_algorithm_2(const Search &search)
   {
-    CoulombSettings mixed        = fallback_settings();
-    mixed.algorithm              = Algorithm::fixed_point;
-    mixed.outer_damping          = .5;
-    mixed.mixed_outer_iterations = 10;
+    const VectorType   start       = search.u;
+    const ContactState start_state = search.state;
+    CoulombSettings    mixed       = later_settings();
+    mixed.algorithm                = Algorithm::fixed_point;
+    mixed.outer_damping            = .5;
+    mixed.mixed_outer_iterations   = 10;
     mixed.maximum_outer_iterations =
       std::max(200u, settings.maximum_outer_iterations);
+    SolverReport report = CoulombSolver<dim>(iteration, mixed)
+                            .solve(search.u, search.state, search.progress);
+    if (report.inner_converged || budget->is_spent())
+      return report;
 
-    const std::string      name   = "Algorithm 2 with mixed normal forces";
-    MonotoneMultigrid<dim> best   = best_iteration();
-    SolverReport           report = attempt(name, best, mixed, search);
-    if (!report.inner_converged && !budget->is_spent())
+    if (!is_finite(search.u, search.state, problem.communicator()))
       {
-        MonotoneMultigrid<dim> without_levels =
-          best.with(algebraic_correction());
-        report = attempt(
-          name + ", algebraic corrections", without_levels, mixed, search);
+        search.u     = start;
+        search.state = start_state;
       }
+    const std::vector<CycleInfo> cycles = report.cycles;
+    MonotoneMultigrid<dim>       best   = without_levels();
+    report                              = CoulombSolver<dim>(best, mixed)
+               .solve(search.u, search.state, search.progress);
+    report.cycles.insert(report.cycles.begin(), cycles.begin(), cycles.end());
     return report;
   }
 
 
 
-  // What mixing extrapolates from are changes of phases as well, and where
-  // there is very much friction nothing good comes of that. Fixed small steps
-  // that do without get close to the solution, slowly; where the phases are
-  // those of the solution, or nearly so, mixing does the rest. All of it is one
-  // attempt.
   template <int dim>
   SolverReport
-  SafeguardedSolver<dim>::careful_algorithm_2(const Search &search)
+  SafeguardedSolver<dim>::newton_method(const Search &search)
   {
-    CoulombSettings careful          = fallback_settings();
-    careful.algorithm                = Algorithm::fixed_point;
-    careful.outer_damping            = .02;
-    careful.mixed_outer_iterations   = 0;
-    careful.maximum_outer_iterations = 1000;
-    // CoulombSolver divides this by the coefficient.
-    careful.outer_tolerance =
-      .01 * std::max(1., problem.effective_coefficient());
-    const std::string name =
-      "Algorithm 2 with small steps of the normal forces";
-    SolverReport steps;
-    const Search inner = {search.u, search.state, steps, search.progress};
-    MonotoneMultigrid<dim> best   = best_iteration();
-    SolverReport           report = attempt(name, best, careful, inner);
-    if (report.inner_converged && !budget->is_spent())
+    if (!newton)
       {
-        careful.outer_tolerance        = settings.outer_tolerance;
-        careful.mixed_outer_iterations = 10;
-        report                         = attempt(name, best, careful, inner);
+        truncated = std::make_unique<TruncatedCorrection<dim>>(
+          levels, settings.cycle, settings.coarse_smoothing_steps);
+        newton =
+          std::make_unique<NewtonSolver<dim>>(iteration.functional(),
+                                              iteration.leading_smoother(),
+                                              levels,
+                                              *truncated,
+                                              settings.smoothing_steps);
       }
-    add_attempt(search.all, name, report, steps.cycles);
+    SolverReport          report;
+    const PhaseCosts      before = phase_costs(problem.communicator());
+    const MultigridResult result = newton->solve(
+      search.u, search.state, later_settings().limits, search.progress);
+    report.converged        = result.converged;
+    report.inner_converged  = result.converged;
+    report.algebraic_error  = result.algebraic_error;
+    report.outer_iterations = 1;
+    report.cycles           = result.cycles;
+    report.contraction      = result.contraction();
+    certify(report, iteration.functional(), search.u, search.state);
+    if (!(report.certificate.largest() <= settings.certificate_tolerance))
+      report.converged = false;
+    report.costs         = phase_costs(problem.communicator()) - before;
+    report.matrix_memory = problem.stiffness.memory_consumption();
+    report.solver_memory = iteration.leading_smoother().memory_consumption() +
+      newton->memory_consumption();
     return report;
   }
 
 
 
   // The coefficient is doubled for as long as that works, and multiplied by the
-  // square root of the last factor where it does not. All of it is one attempt.
+  // square root of the last factor where it does not.
   template <int dim>
   SolverReport
-  SafeguardedSolver<dim>::continuation(const Search &search)
+  SafeguardedSolver<dim>::continuation(const Search &search, double &solved)
   {
     const double target = problem.friction_coefficient;
     // Also if a callback throws.
     const std::shared_ptr<void> restores_coefficient(
       nullptr, [&](void *) { problem.friction_coefficient = target; });
     // Where most problems are easy.
-    constexpr double easy            = .25;
-    constexpr double smallest_factor = 1.05;
-    double           solved = 0, factor = 2;
-    SolverReport     report, steps;
+    constexpr double       easy            = .25;
+    constexpr double       smallest_factor = 1.05;
+    double                 factor          = 2;
+    SolverReport           report;
+    std::vector<CycleInfo> cycles;
+    solved = 0;
     while (solved < target && !budget->is_spent())
       {
         const double coefficient     = solved == 0
@@ -383,7 +222,8 @@ namespace Friction
         VectorType   next            = search.u;
         ContactState next_state      = search.state;
         problem.friction_coefficient = coefficient;
-        report = mixed_algorithm_2({next, next_state, steps, search.progress});
+        report = newton_method({next, next_state, search.progress});
+        cycles.insert(cycles.end(), report.cycles.begin(), report.cycles.end());
         if (report.converged)
           {
             solved       = coefficient;
@@ -398,11 +238,135 @@ namespace Friction
           }
       }
     report.converged = report.converged && solved == target;
+    report.cycles    = cycles;
+    if (!report.converged)
+      {
+        // Of what is returned, with all friction.
+        problem.friction_coefficient = target;
+        certify(report, iteration.functional(), search.u, search.state);
+      }
+    return report;
+  }
 
-    std::ostringstream name;
-    name << "continuation from less friction, up to the coefficient " << solved
-         << ",";
-    add_attempt(search.all, name.str(), report, steps.cycles);
+
+
+  template <int dim>
+  SolverReport
+  SafeguardedSolver<dim>::solve(VectorType     &u,
+                                ContactState   &state,
+                                const Progress &progress)
+  {
+    const RunScope  part(problem.communicator(), RunPart::solution);
+    CoulombSettings first(settings);
+    if (!settings.safeguards)
+      return CoulombSolver<dim>(iteration, first).solve(u, state, progress);
+
+    const bool coulomb       = problem.has_coulomb_friction();
+    const bool much_friction = coulomb && problem.effective_coefficient() > 1.;
+    budget = std::make_shared<CycleBudget>(settings.total_cycles);
+    budget->begin_attempt();
+    first.limits.patience      = much_friction ? short_patience : patience;
+    first.limits.budget        = budget;
+    const MPI_Comm     comm    = problem.communicator();
+    const PhaseCosts   before  = phase_costs(comm);
+    const VectorType   initial = u;
+    const ContactState initial_state = state;
+    const std::string  name          = name_of(problem, settings);
+
+    SolverReport report =
+      CoulombSolver<dim>(iteration, first).solve(u, state, progress);
+    if (report.converged)
+      return report;
+
+    // If nothing succeeds, what violates the law least is returned.
+    SolverReport all;
+    add_attempt(all, name, report);
+    double       smallest_violation = report.certificate.largest();
+    VectorType   best               = u;
+    ContactState best_state         = state;
+    if (!is_finite(u, state, comm) || !std::isfinite(smallest_violation))
+      {
+        smallest_violation = std::numeric_limits<double>::infinity();
+        best               = initial;
+        best_state         = initial_state;
+      }
+    const auto attempt = [&](const std::string &attempt_name,
+                             const auto        &method) {
+      report         = method(Search{u, state, progress});
+      const double v = report.certificate.largest();
+      if (!report.converged && v < smallest_violation &&
+          is_finite(u, state, comm))
+        {
+          smallest_violation = v;
+          best               = u;
+          best_state         = state;
+        }
+      add_attempt(all, attempt_name, report);
+    };
+    const auto start_anew = [&]() {
+      u     = initial;
+      state = initial_state;
+    };
+    bool       is_algebraic              = false;
+    const auto try_algebraic_corrections = [&]() {
+      if (report.converged || is_algebraic || !budget->begin_attempt())
+        return;
+      // A step of Newton's method may have gone into the obstacle.
+      if (all.attempts.size() > 1 || !is_finite(u, state, comm))
+        start_anew();
+      is_algebraic = true;
+      attempt(name + " with algebraic corrections", [&](const Search &search) {
+        return algebraic_corrections(search);
+      });
+    };
+
+    // Without much friction hardly anything but coarse levels can be to blame;
+    // but not if only the outer iteration of Algorithm 2 has failed.
+    const bool outer_failure = coulomb && report.inner_converged &&
+      settings.algorithm == Algorithm::fixed_point;
+    if (!outer_failure && !much_friction)
+      try_algebraic_corrections();
+    if (!report.converged && budget->begin_attempt())
+      {
+        start_anew();
+        attempt("Newton's method",
+                [&](const Search &search) { return newton_method(search); });
+      }
+    if (!report.converged && coulomb &&
+        budget->begin_attempt(/*is last =*/true))
+      {
+        start_anew();
+        double solved = 0;
+        attempt("", [&](const Search &search) {
+          return continuation(search, solved);
+        });
+        std::ostringstream text;
+        text << "continuation from less friction, up to the coefficient "
+             << solved << ',';
+        all.attempts.back().name = text.str();
+      }
+    try_algebraic_corrections();
+    if (!report.converged && coulomb &&
+        budget->begin_attempt(/*is last =*/true))
+      {
+        u     = best;
+        state = best_state;
+        attempt(
+          "Algorithm 2 with mixed normal forces",
+          [&](const Search &search) { return mixed_algorithm_2(search); });
+      }
+
+    // What is reported of a failure is what is returned, and not the end of an
+    // attempt that has been thrown away.
+    if (!report.converged)
+      {
+        u     = best;
+        state = best_state;
+        certify(report, iteration.functional(), u, state);
+      }
+    report.cycles   = all.cycles;
+    report.attempts = all.attempts;
+    report.costs    = phase_costs(comm) - before;
     return report;
   }
 

@@ -2,6 +2,7 @@
 #define friction_algorithms_safeguarded_solver_h
 
 #include <common/algorithms/coulomb_solver.h>
+#include <common/algorithms/newton_solver.h>
 #include <common/iteration/algebraic_correction.h>
 #include <common/iteration/truncated_correction.h>
 
@@ -12,26 +13,21 @@ namespace Friction
 {
   /**
    * Solves the discrete contact problem by CoulombSolver, and if that gets
-   * nowhere, by whatever else may succeed:
+   * nowhere, by what may succeed:
    *
-   * 1. the algorithm of the settings, by default Algorithm 3;
-   * 2. with Coulomb's friction the same algorithm with shorter steps, if phases
-   *    were still changing; if they were not, or have stopped to, with
-   *    AlgebraicCorrection, since the coarse levels may be the trouble, for
-   *    example because cells are short in two of three directions;
-   * 3. Algorithm 2 with half of each change of the normal forces, and with
-   *    mixing, see MixedFixedPoint: if Coulomb's law was the trouble, because
-   *    there is much friction. Each of its problems, with given normal forces,
-   *    is convex, which makes it slow and reliable;
-   * 4. Algorithm 2 with a fiftieth of each change, and without mixing until the
-   *    normal forces have nearly settled: with so much friction that each
-   *    change of them changes phases, too;
-   * 5. continuation: first the problem with less friction, and its solution as
-   *    initial guess for more, until all friction is there.
-   *
-   * Without friction, or with Tresca's, the problem is convex, and the last
-   * three are left out. Each attempt starts where the one before has ended,
-   * except for the last two, which start from the initial guess.
+   * 1. the algorithm of the settings, by default Algorithm 3. With much
+   * friction it has to show soon that it gets somewhere;
+   * 2. the same with AlgebraicCorrection, where there is not much friction:
+   *    then coarse levels are the trouble, for example because cells are short
+   *    in two of three directions;
+   * 3. Newton's method from the initial guess, see NewtonSolver: where there is
+   *    much friction, the law is;
+   * 4. continuation by the same method: first the problem with less friction,
+   *    and its solution as initial guess for more, until all friction is there;
+   * 5. algebraic corrections, if they have not been tried yet;
+   * 6. Algorithm 2 with half of each change of the normal forces, and with
+   *    mixing, see MixedFixedPoint. Each of its problems, with given normal
+   *    forces, is convex, which makes it slow and reliable.
    *
    * The discrete problem has a solution whatever the coefficient of friction,
    * if some admissible displacement has no tangential part at the contact
@@ -42,15 +38,16 @@ namespace Friction
    *
    * All attempts together take SolverSettings::total_cycles cycles at most, and
    * each of them half of those that are left and the last one all, so that a
-   * problem without hope comes to an end.
+   * problem without hope comes to an end. Without Coulomb's friction the
+   * problem is convex, and 4 and 6 are left out.
    */
   template <int dim>
   class SafeguardedSolver
   {
   public:
     /**
-     * @param problem    whose coefficient of friction the last attempt changes
-     *                   while it lasts.
+     * @param problem    whose coefficient of friction continuation changes
+     * while it lasts.
      * @param levels     of the same problem, for corrections.
      * @param iteration  the step to begin with. Other attempts exchange one or
      *                   two of its parts and share all others.
@@ -81,40 +78,33 @@ namespace Friction
     // Of the present solve().
     std::shared_ptr<CycleBudget> budget;
 
-    // Parts of later attempts, made when the first of them is.
+    // Parts of attempts after the first, made when the first of them needs it.
     std::unique_ptr<Linearization<dim>>       phases;
     std::unique_ptr<TruncatedCorrection<dim>> truncated;
     std::unique_ptr<AlgebraicCorrection<dim>> algebraic;
-    LineSearch<dim>                           line_search, short_steps;
+    std::unique_ptr<NewtonSolver<dim>>        newton;
+    LineSearch<dim>                           whole_steps;
 
-    // The iteration with the parts that are known to work best.
-    MonotoneMultigrid<dim> best_iteration();
-
-    Correction<dim> &algebraic_correction();
-
-    // What is being solved, and what has been tried so far.
+    // What is being solved.
     struct Search
     {
       VectorType     &u;
       ContactState   &state;
-      SolverReport   &all;
       const Progress &progress;
     };
 
-    CoulombSettings first_settings() const;
+    CoulombSettings later_settings() const;
 
-    CoulombSettings fallback_settings() const;
+    MonotoneMultigrid<dim> without_levels();
 
-    SolverReport attempt(const std::string      &name,
-                         MonotoneMultigrid<dim> &with_iteration,
-                         const CoulombSettings  &with_settings,
-                         const Search           &search) const;
+    SolverReport algebraic_corrections(const Search &search);
 
     SolverReport mixed_algorithm_2(const Search &search);
 
-    SolverReport careful_algorithm_2(const Search &search);
+    SolverReport newton_method(const Search &search);
 
-    SolverReport continuation(const Search &search);
+    // @p solved is the largest coefficient with a solution.
+    SolverReport continuation(const Search &search, double &solved);
   };
 
 

@@ -451,7 +451,7 @@ namespace Friction
        "Give up after this many multigrid cycles of one iteration."},
       {"Solver",
        "Total cycles",
-       "20000",
+       "5000",
        steps,
        "Give up after this many multigrid cycles of all attempts that "
        "safeguards make on a level, each of which gets half of those that are "

@@ -109,7 +109,7 @@ namespace Friction
     unsigned int maximum_cycles = 200;
 
     /// All attempts of the safeguards together.
-    unsigned int total_cycles = 20000;
+    unsigned int total_cycles = 5000;
 
     unsigned int maximum_outer_iterations = 50;
 

@@ -24,7 +24,8 @@ namespace
   test_stalling()
   {
     std::cout << "Stalling" << std::endl;
-    const auto stalls_at = [](const auto &increment) {
+    const auto stalls_at = [](const auto        &increment,
+                              const unsigned int patience = 50) {
       MultigridResult result;
       for (unsigned int cycle = 0; cycle < 200; ++cycle)
         {
@@ -33,7 +34,7 @@ namespace
           result.cycles.push_back(info);
           if (info.increment <= 1e-9)
             return 0u;
-          if (result.stalls(1e-9, 200))
+          if (result.stalls(1e-9, 200, patience))
             return cycle + 1;
         }
       return 200u;
@@ -52,6 +53,12 @@ namespace
             return c < 40 ? 1e-2 : 1e-2 * std::pow(.5, c - 40.);
           }) == 0,
           "forty cycles to find the contact zone are granted");
+    check(stalls_at([](const unsigned int c) { return c % 2 ? 1e-2 : 1e-3; },
+                    15) == 15,
+          "with less patience going to and fro is given up after 15 cycles");
+    check(
+      stalls_at([](const unsigned int c) { return std::pow(.89, c); }, 15) == 0,
+      "and a contraction of 0.89 is not");
   }
 
 
