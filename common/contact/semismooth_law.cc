@@ -55,13 +55,6 @@ namespace Friction
 
 
 
-    // Turning the slip may cost 10000 times what moving the zone does, which is
-    // c; larger numbers would only cost digits. Derivative and right hand side
-    // have the same factor, so that the solution remains what it is.
-    constexpr double largest_share = 1e4;
-
-
-
     // How much turning the slip of a node may cost, in stiffnesses of the node
     // or of the zone; larger numbers would only cost digits.
     constexpr double largest_turn = 1e4;
