@@ -69,12 +69,7 @@ namespace Friction
         x.updates_normal_forces = coulomb;
         const MultigridResult result =
           run_multigrid(iteration, x, settings.limits, progress);
-        report.converged        = result.converged;
-        report.inner_converged  = result.converged;
-        report.algebraic_error  = result.algebraic_error;
-        report.outer_iterations = 1;
-        report.cycles           = result.cycles;
-        report.contraction      = result.contraction();
+        report.set_result(result);
       }
 
     certify(report, iteration.functional(), u, state);

@@ -179,12 +179,7 @@ namespace Friction
     const PhaseCosts      before = phase_costs(problem.communicator());
     const MultigridResult result = newton->solve(
       search.u, search.state, later_settings().limits, search.progress);
-    report.converged        = result.converged;
-    report.inner_converged  = result.converged;
-    report.algebraic_error  = result.algebraic_error;
-    report.outer_iterations = 1;
-    report.cycles           = result.cycles;
-    report.contraction      = result.contraction();
+    report.set_result(result);
     certify(report, iteration.functional(), search.u, search.state);
     if (!(report.certificate.largest() <= settings.certificate_tolerance))
       report.converged = false;

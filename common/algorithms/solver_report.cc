@@ -29,6 +29,19 @@ namespace Friction
 
 
   void
+  SolverReport::set_result(const MultigridResult &result)
+  {
+    converged        = result.converged;
+    inner_converged  = result.converged;
+    algebraic_error  = result.algebraic_error;
+    outer_iterations = 1;
+    cycles           = result.cycles;
+    contraction      = result.contraction();
+  }
+
+
+
+  void
   SolverReport::add_earlier(const SolverReport &report)
   {
     outer_iterations += report.outer_iterations;

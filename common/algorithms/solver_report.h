@@ -75,6 +75,10 @@ namespace Friction
     double     energy = 0;
     VectorType residual;
 
+    /// Takes over what a single multigrid iteration, or a solution by Newton's
+    /// method, has come to.
+    void set_result(const MultigridResult &result);
+
     /// Adds what an earlier solution has taken which led to this one: cycles,
     /// outer iterations and attempts. Contraction, errors and changes remain
     /// those of this one.
