@@ -846,6 +846,8 @@ CASES += [
 
 
 def main():
+    # Each program is on one process, and need not start a daemon for others.
+    os.environ['OMPI_MCA_ess_singleton_isolated'] = '1'
     runner = Runner({2: os.path.abspath(sys.argv[1]), 3: os.path.abspath(sys.argv[2])})
     work = tempfile.mkdtemp()
     try:

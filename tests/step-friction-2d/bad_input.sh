@@ -283,7 +283,9 @@ run_on_two()
 }
 
 # With several processes, every message comes once, and the status is the same.
-# mpirun may add remarks of its own, none of which begins like ours.
+# mpirun may add remarks of its own, none of which begins like ours. It gives programs
+# a terminal, on which progress is overwritten by what comes next, if the machine has
+# so much else to do that there is progress to show.
 on_two()
 {
   name=$1
@@ -293,7 +295,7 @@ on_two()
   run_on_two "$@"
   problem=
   [ $status -eq "$wanted" ] || problem="$problem status $status"
-  [ "$(cat stdout stderr | grep -c -e "$pattern")" -eq 1 ] ||
+  [ "$(cat stdout stderr | sed 's/\r$//; s/.*\r//' | grep -c -e "$pattern")" -eq 1 ] ||
     problem="$problem '$pattern' not once"
   verdict "two processes: $name" "$problem"
 }
