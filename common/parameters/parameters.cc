@@ -628,9 +628,8 @@ namespace Friction
         {
           const auto        colon = part.find(':');
           const std::string key   = Utilities::trim(part.substr(0, colon));
-          const std::string name  = colon == part.npos
-             ? ""
-             : Utilities::trim(part.substr(colon + 1));
+          const std::string name =
+            colon == part.npos ? "" : Utilities::trim(part.substr(colon + 1));
           std::string *const target = key == "length" ? &names.length
             : key == "force"                          ? &names.force
                                                       : nullptr;
@@ -663,9 +662,9 @@ namespace Friction
       Parameters                                       &parameters)
     {
       Parameters::Contact &contact = parameters.contact;
-      const std::string name      = "Contact/Friction coefficient";
-      contact.varying_coefficient = values.get(name);
-      const auto first_use        = std::find_if(
+      const std::string    name    = "Contact/Friction coefficient";
+      contact.varying_coefficient  = values.get(name);
+      const auto first_use         = std::find_if(
         definitions.begin(), definitions.end(), [](const auto &definition) {
           return uses_word(definition.second, "F");
         });
@@ -1069,7 +1068,7 @@ namespace Friction
           .evaluate(expression, values.subject("Scene/Constants"));
     parameters.load_steps.times = read_times(values, constants);
     auto taken                  = constants;
-    taken["F"]       = F;
+    taken["F"]                  = F;
     auto definitions = read_names("Scene/Definitions", taken, values);
     if (F_varies)
       define_varying_coefficient(values, constants, definitions, parameters);
@@ -1234,13 +1233,13 @@ namespace Friction
       output.principal_stresses = values.flag("Output/Principal stresses");
       output.units              = read_units(values);
       output.forces             = values.flag("Output/Forces");
-      output.checkpoint   = values.flag("Output/Checkpoint");
-      output.verification = values.flag("Output/Verification");
-      output.times        = values.flag("Output/Times");
-      output.profile      = values.flag("Output/Profile");
-      output.verbosity    = (verbosity == "quiet"      ? Verbosity::quiet
-                               : verbosity == "levels" ? Verbosity::levels
-                                                       : Verbosity::cycles);
+      output.checkpoint         = values.flag("Output/Checkpoint");
+      output.verification       = values.flag("Output/Verification");
+      output.times              = values.flag("Output/Times");
+      output.profile            = values.flag("Output/Profile");
+      output.verbosity          = (verbosity == "quiet"      ? Verbosity::quiet
+                                     : verbosity == "levels" ? Verbosity::levels
+                                                             : Verbosity::cycles);
       if (output.directory.empty())
         throw InputError(values.subject("Output/Directory") +
                          " is empty; name a directory.");

@@ -37,8 +37,8 @@ namespace Friction
      *   use the constants and the definitions before them
      * @param where the beginning of the sentence if one of them cannot be
      *   understood, which is an InputError
-     * @param has_time whether definitions, and expressions with coordinates, may
-     *   use the time t
+     * @param has_time whether definitions, and expressions with coordinates,
+     * may use the time t
      */
     Expressions(
       const std::map<std::string, double>                    &constants,
@@ -168,10 +168,10 @@ namespace Friction
       ObstacleKind        kind = ObstacleKind::none;
       std::vector<double> point;  ///< on the plane; empty: 0
       std::vector<double> normal; ///< into the obstacle; empty: down
-      std::vector<std::vector<double>> centers;     ///< of the rods
-      std::vector<std::vector<double>> axes;        ///< of the rods, 3D only
-      std::vector<double>              radii; ///< one for each, or for all
-      double length = std::numeric_limits<double>::infinity(); ///< of the rods
+      std::vector<std::vector<double>> centers; ///< of the rods
+      std::vector<std::vector<double>> axes;    ///< of the rods, 3D only
+      std::vector<double>              radii;   ///< one for each, or for all
+      double length  = std::numeric_limits<double>::infinity(); ///< of the rods
       bool   is_hole = false; ///< whether the body is inside of rods or balls
       std::string function;   ///< positive outside of the obstacle
     };
@@ -273,9 +273,9 @@ namespace Friction
     /// Sorted by number; none in most scenes.
     std::vector<FurtherContact> further_contacts;
 
-    Refinement         refinement;
-    SolverSettings     solver;
-    Output             output;
+    Refinement     refinement;
+    SolverSettings solver;
+    Output         output;
 
     /// The constants and definitions that the expressions above may use.
     Expressions expressions;
