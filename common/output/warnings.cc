@@ -199,6 +199,34 @@ namespace Friction
           return condition.has_boundary() && !condition.obstacle.empty();
         });
     }
+
+
+
+    // Physical ids have been looked for in the mesh file; what a condition
+    // holds for is known of a mesh only.
+    template <int dim>
+    void
+    warn_of_empty_regions(const Discretization<dim> &discretization,
+                          std::vector<std::string>  &warnings)
+    {
+      const Materials<dim> &materials = discretization.scene().materials();
+      if (materials.is_homogeneous())
+        return;
+      std::vector<unsigned int> n_cells(materials.of_regions().size(), 0);
+      for (const auto &cell : discretization.dof_handler()
+                                .get_triangulation()
+                                .active_cell_iterators())
+        if (cell->is_locally_owned())
+          ++n_cells[materials.region(cell)];
+      for (unsigned int i = 1; i < n_cells.size(); ++i)
+        if (Utilities::MPI::sum(
+              n_cells[i], discretization.constraints().communicator()) == 0)
+          warnings.push_back(
+            "Warning: no cell of the last mesh has the material of region " +
+            std::to_string(i) +
+            " in 'Material/Regions'; is its condition the right one, or does "
+            "a later region cover it?");
+    }
   } // namespace
 
 
@@ -326,6 +354,7 @@ namespace Friction
       contact_geometry(discretization, displacement, state);
 
     std::vector<std::string> warnings;
+    warn_of_empty_regions(discretization, warnings);
     // A scene with a known solution is one for mathematicians.
     if (g.displacement > large_displacement * g.size &&
         scene.exact_displacement() == nullptr)

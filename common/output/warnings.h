@@ -63,6 +63,7 @@ namespace Friction
 
   /**
    * About a solution:
+   * - no cell has the material of a region;
    * - no node is in contact;
    * - normals of the body are used where they are not those of the obstacle, so
    *   that forces do not obey the law of friction;
