@@ -155,7 +155,10 @@ namespace StepFriction2d
   // made in either case, and p4est then refines it as it was, and distributes
   // it over as many processes as there are now. The initial guess is the
   // undeformed body without any forces, which on a coarse mesh is good enough,
-  // or what had been interpolated to this mesh when the run was interrupted.
+  // or what had been interpolated to this mesh when the run was interrupted. In
+  // a history <code>LoadSteps</code> says which vectors there are besides, and
+  // has friction count slip from the end of the load step before;
+  // <code>ForceControl</code> knows how stiff the body has been.
   template <int dim>
   unsigned int
   ContactProblem<dim>::make_first_mesh(const Start start)
@@ -164,7 +167,10 @@ namespace StepFriction2d
     scene.make_coarse_mesh(*triangulation);
     if (start == Start::from_checkpoint)
       {
-        level = output.load_checkpoint(*triangulation);
+        const auto resumption = output.load_checkpoint(*triangulation);
+        level                 = resumption.level;
+        scene.begin_load_step(resumption.load_step);
+        force_control.restore(resumption.platens);
         for (const LevelRecord &record : output.levels())
           stop.add_level(
             record.error_at_least, record.dofs, record.contraction);
@@ -179,8 +185,9 @@ namespace StepFriction2d
     if (start == Start::from_checkpoint)
       {
         Checkpoints::load_vectors(discretization.dof_handler(),
-                                  {&displacement, &tractions});
-        force_control.adopt(discretization, displacement);
+                                  load_steps.checkpoint_vectors(
+                                    discretization, displacement, tractions));
+        load_steps.resume(discretization);
       }
     output.check_start(discretization);
     return level;
@@ -527,26 +534,27 @@ namespace StepFriction2d
             load_steps.begin_next(
               scene, discretization, force_control, displacement, tractions);
             output.begin_load_step(scene);
-            continue;
           }
-
-        // Nested iteration: the displacement and the contact tractions are
-        // interpolated to the refined mesh as they are. Tractions rather than
-        // nodal forces, because a force belongs to a mesh, and halves when the
-        // mesh is refined. The flags of contact and stick are not transferred;
-        // the first sweep decides anew. The guess is worth having: with it the
-        // number of cycles does not grow with the level.
-        refine_mesh(
-          *triangulation, discretization, {&displacement, &tractions});
+        else
+          // Nested iteration: the displacement and the contact tractions are
+          // interpolated to the refined mesh as they are. Tractions rather than
+          // nodal forces, because a force belongs to a mesh, and halves when
+          // the mesh is refined. The flags of contact and stick are not
+          // transferred; the first sweep decides anew. The guess is worth
+          // having: with it the number of cycles does not grow with the level.
+          refine_mesh(
+            *triangulation, discretization, {&displacement, &tractions});
 
         // This is the moment for a checkpoint, if the scene wants any: a mesh
         // and two vectors on it are all that the next level needs of those
-        // before. With what has been recorded so far, a run continued with
+        // before, and in a history what the load step before has come to. With
+        // what has been recorded so far, a run continued with
         // <code>--restart</code> ends with the same files as any other.
         output.save_checkpoint(level + 1,
-                               *triangulation,
-                               discretization.dof_handler(),
-                               {&displacement, &tractions});
+                               discretization,
+                               load_steps.checkpoint_vectors(
+                                 discretization, displacement, tractions),
+                               force_control);
       }
   }
 } // namespace StepFriction2d

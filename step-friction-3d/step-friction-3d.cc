@@ -32,8 +32,9 @@ namespace StepFriction3d
   // @sect3{The first mesh}
 
   // On the first mesh the body is undeformed. A checkpoint holds the
-  // refinements of a mesh and the two vectors that had been interpolated to it;
-  // any number of processes may have written it, and any other may read it.
+  // refinements of a mesh and the two vectors that had been interpolated to it,
+  // and in a history what the load step before has come to; any number of
+  // processes may have written it, and any other may read it.
   //
   // The discretisation then finds the nodes that may touch
   // (<code>ContactBoundary</code>). Several bilinear faces meet in a node,
@@ -54,13 +55,18 @@ namespace StepFriction3d
     else
       {
         nest.scene().make_coarse_mesh(nest.mesh());
-        nest.begin_on_level(output.load_checkpoint(nest.mesh()));
+        const auto resumption = output.load_checkpoint(nest.mesh());
+        nest.begin_on_level(
+          resumption.level, resumption.load_step, resumption.platens);
         Checkpoints::load_vectors(nest.discretization().dof_handler(),
-                                  nest.guess());
-        nest.adopt_guess();
+                                  nest.checkpoint_vectors());
+        nest.resume();
         for (const LevelRecord &record : output.levels())
-          nest.add_level(
-            record.error_at_least, record.dofs, record.contraction);
+          if (record.load_step == 1 &&
+              record.level < nest.parameters().refinement.levels &&
+              record.dofs < nest.parameters().refinement.maximum_dofs)
+            nest.add_level(
+              record.error_at_least, record.dofs, record.contraction);
       }
     output.check_start(nest.discretization());
   }
@@ -211,6 +217,7 @@ namespace StepFriction3d
     while (nest.report().converged && nest.begin_next_load_step())
       {
         output.begin_load_step(nest.scene());
+        output.save_checkpoint(nest);
         solve(nest, output);
       }
 

@@ -434,21 +434,40 @@ namespace Friction
 
 
   template <int dim>
-  void
-  ForceControl<dim>::adopt(Discretization<dim> &discretization,
-                           const VectorType    &u)
+  std::vector<double>
+  ForceControl<dim>::checkpoint_numbers() const
   {
-    if (!has_platens())
-      return;
-    const PlatenDofs dofs         = find_dofs(discretization);
-    const MPI_Comm   communicator = discretization.constraints().communicator();
-    const VectorType &values = discretization.constraints().prescribed_values();
-    Eigen::VectorXd   way =
-      sums_over(dofs, u, communicator) - sums_over(dofs, values, communicator);
-    for (unsigned int j = 0; j < controls.size(); ++j)
-      way[j] /= sum_over_processes(double(dofs[j].size()), communicator);
-    move_to(positions() + way);
-    discretization.update_prescribed_values();
+    const Eigen::VectorXd s = positions();
+    std::vector<double>   numbers;
+    numbers.push_back(is_learnt);
+    numbers.push_back(unit);
+    numbers.insert(numbers.end(), s.data(), s.data() + s.size());
+    numbers.insert(numbers.end(), wanted.data(), wanted.data() + wanted.size());
+    numbers.insert(
+      numbers.end(), compliance.data(), compliance.data() + compliance.size());
+    return numbers;
+  }
+
+
+
+  template <int dim>
+  void
+  ForceControl<dim>::restore(const std::vector<double> &numbers)
+  {
+    const unsigned int n = controls.size();
+    // Forces and compliance are known when there has been a solution.
+    const bool is_solved = numbers.size() > 2 + n;
+    AssertThrow(numbers.size() == (is_solved ? 2 + n + n + n * n : 2 + n),
+                ExcMessage("These are not the platens of this scene."));
+    const double *next = numbers.data();
+    is_learnt          = *next++ != 0.;
+    unit               = *next++;
+    move_to(Eigen::Map<const Eigen::VectorXd>(next, n));
+    if (is_solved)
+      {
+        wanted     = Eigen::Map<const Eigen::VectorXd>(next + n, n);
+        compliance = Eigen::Map<const Eigen::MatrixXd>(next + 2 * n, n, n);
+      }
   }
 
 

@@ -72,11 +72,11 @@ namespace Friction
                        const double                         tolerance,
                        const std::function<SolverReport()> &solve_once);
 
-    /**
-     * Moves the platens to where a displacement has them, that of an earlier
-     * run, for example. Collective.
-     */
-    void adopt(Discretization<dim> &discretization, const VectorType &u);
+    /** Where the platens are, and all that has been learnt, in numbers for
+     * restore(), which takes those of the same scene. The discretisation has to
+     * be set up anew after that. */
+    std::vector<double> checkpoint_numbers() const;
+    void                restore(const std::vector<double> &numbers);
 
     /** Moves the platens to where their forces, which the scene has changed by
      * going to another load step, should be. The discretisation has to be set

@@ -13,21 +13,22 @@ namespace Friction
                              VectorType          &displacement,
                              VectorType          &tractions)
   {
-    const double     time             = scene.time();
-    const VectorType old_displacement = displacement;
-    const VectorType old_tractions    = tractions;
-    const VectorType old_prescribed =
+    const unsigned int step             = scene.load_step();
+    const VectorType   old_displacement = displacement;
+    const VectorType   old_tractions    = tractions;
+    const VectorType   old_prescribed =
       discretization.constraints().prescribed_values();
-    scene.begin_load_step(scene.load_step() + 1);
+    scene.begin_load_step(step + 1);
     force_control.predict();
     discretization.set_up();
     discretization.set_slip_origin(old_displacement);
 
-    const bool   can_go_on = last_displacement.size() == displacement.size();
+    const bool   can_go_on = last_displacement.size() > 0;
     const double factor    = can_go_on
          ? growth(old_prescribed,
                discretization.constraints().prescribed_values(),
-               (scene.time() - time) / (time - last_time),
+               (scene.time(step + 1) - scene.time(step)) /
+                 (scene.time(step) - scene.time(step - 1)),
                discretization.constraints().communicator())
          : 0.;
     const auto   go_on =
@@ -43,7 +44,36 @@ namespace Friction
     go_on(displacement, old_displacement, last_displacement);
     go_on(tractions, old_tractions, last_tractions);
     last_prescribed = old_prescribed;
-    last_time       = time;
+  }
+
+
+
+  template <int dim>
+  std::vector<VectorType *>
+  LoadSteps<dim>::checkpoint_vectors(const Discretization<dim> &discretization,
+                                     VectorType                &displacement,
+                                     VectorType                &tractions)
+  {
+    std::vector<VectorType *> vectors = {&displacement, &tractions};
+    if (discretization.scene().load_step() > 0)
+      for (VectorType *v :
+           {&last_displacement, &last_tractions, &last_prescribed})
+        {
+          if (v->size() == 0)
+            *v = discretization.vector();
+          vectors.push_back(v);
+        }
+    return vectors;
+  }
+
+
+
+  template <int dim>
+  void
+  LoadSteps<dim>::resume(Discretization<dim> &discretization)
+  {
+    if (discretization.scene().load_step() > 0)
+      discretization.set_slip_origin(last_displacement);
   }
 
 

@@ -5,6 +5,8 @@
 #include <common/discretization/discretization.h>
 #include <common/scene/scene.h>
 
+#include <vector>
+
 namespace Friction
 {
   /**
@@ -35,11 +37,27 @@ namespace Friction
                     VectorType          &displacement,
                     VectorType          &tractions);
 
+    /**
+     * What a checkpoint has to hold: the guess, and in later load steps
+     * displacement, contact tractions and prescribed displacements of the step
+     * before. A run that is continued reads into these vectors, and calls
+     * resume() then.
+     * @param discretization  of the load step, which gives vectors of the step
+     *                        before their sizes, if they are empty.
+     */
+    std::vector<VectorType *>
+    checkpoint_vectors(const Discretization<dim> &discretization,
+                       VectorType                &displacement,
+                       VectorType                &tractions);
+
+    /** Takes the place of begin_next() in a run that is continued with the
+     * present load step of the scene: has friction count slip from the
+     * displacement of the step before. Collective. */
+    void resume(Discretization<dim> &discretization);
+
   private:
-    // Of the step before the one that has ended last; empty before there are
-    // two.
+    // Of the step that has ended last; empty in the first one.
     VectorType last_displacement, last_tractions, last_prescribed;
-    double     last_time = 0.;
 
     double growth(const VectorType &prescribed,
                   const VectorType &next_prescribed,

@@ -39,9 +39,14 @@ namespace Friction
 
   template <int dim>
   void
-  NestedIteration<dim>::begin_on_level(const unsigned int level)
+  NestedIteration<dim>::begin_on_level(const unsigned int         level,
+                                       const unsigned int         load_step,
+                                       const std::vector<double> &platens)
   {
     the_level = level;
+    the_scene.begin_load_step(load_step);
+    if (!platens.empty())
+      force_control.restore(platens);
     the_discretization.set_up();
     the_discretization.assemble(bilinear_form);
     guessed_displacement = the_discretization.vector();

@@ -36,8 +36,36 @@ namespace Friction
     void begin();
 
     /** Discretises on the mesh as it is, which the caller has made; it is
-     * that of level @p level. The initial guess is zero; see guess(). */
-    void begin_on_level(const unsigned int level);
+     * that of level @p level. The initial guess is zero; see guess().
+     * @param load_step, platens  of a run that is continued: the load step to
+     *   be solved, and ForceControl::checkpoint_numbers(). The caller then
+     *   reads checkpoint_vectors(), guess included, and calls resume(). */
+    void begin_on_level(const unsigned int         level,
+                        const unsigned int         load_step = 0,
+                        const std::vector<double> &platens   = {});
+
+    /** What a checkpoint of this level has to hold, see
+     * LoadSteps::checkpoint_vectors(). */
+    std::vector<VectorType *>
+    checkpoint_vectors()
+    {
+      return load_steps.checkpoint_vectors(
+        the_discretization, guessed_displacement, guessed_tractions);
+    }
+
+    /** What has been read into checkpoint_vectors() is what the level begins
+     * with. */
+    void
+    resume()
+    {
+      load_steps.resume(the_discretization);
+    }
+
+    const ForceControl<dim> &
+    platens() const
+    {
+      return force_control;
+    }
 
     /** Solves on this mesh with the settings of the parameters, not better than
      * the estimate of the mesh before makes sensible if they say so, and
@@ -140,18 +168,11 @@ namespace Friction
     }
 
     /** What has been interpolated to this mesh: displacement and contact
-     * tractions. If it is replaced, adopt_guess() has to follow. */
+     * tractions. */
     std::vector<VectorType *>
     guess()
     {
       return {&guessed_displacement, &guessed_tractions};
-    }
-
-    /** Platens are where the guess has them. */
-    void
-    adopt_guess()
-    {
-      force_control.adopt(the_discretization, guessed_displacement);
     }
 
     /** The accepted solution, with ghosts of deal.II and hanging nodes. */

@@ -20,7 +20,8 @@ namespace Friction
    * The checkpoints of a run, each a directory `checkpoint-NN` in that of the
    * run. It holds what is needed to solve level NN and to go on from there:
    * - `mesh` and the files beside it that deal.II makes: the mesh of that
-   *   level, and the vectors that were interpolated to it;
+   *   level, and the vectors that were interpolated to it, or that a load
+   *   step begins with;
    * - `record`: whatever else the run wants to remember, as a sequence of
    *   bytes;
    * - `manifest`: what the others have to be like, see Manifest.

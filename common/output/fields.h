@@ -137,7 +137,7 @@ namespace Friction
     void
     serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &body_files &contact_files &body_entries;
+      archive &body_files &contact_files &body_entries &last_entry_time;
     }
 
   private:

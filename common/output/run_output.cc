@@ -19,7 +19,7 @@ namespace Friction
   namespace
   {
     // To be increased whenever what is in a checkpoint changes.
-    constexpr unsigned int checkpoint_format = 5;
+    constexpr unsigned int checkpoint_format = 6;
 
 
 
@@ -98,7 +98,7 @@ namespace Friction
     for (const std::string &warning :
          warnings_at_start(discretization, parameters))
       the_console.warning(warning);
-    if (discretization.scene().n_load_steps() > 1)
+    if (discretization.scene().n_load_steps() > 1 && !restarted)
       begin_load_step(discretization.scene());
   }
 
@@ -380,15 +380,19 @@ namespace Friction
 
   template <int dim>
   void
-  RunOutput<dim>::save_checkpoint(
-    const unsigned int                     next_level,
-    const Triangulation                   &triangulation,
-    const DoFHandler<dim>                 &dof_handler,
-    const std::vector<const VectorType *> &vectors) const
+  RunOutput<dim>::save_checkpoint(const unsigned int         next_level,
+                                  const Discretization<dim> &discretization,
+                                  const std::vector<VectorType *> &vectors,
+                                  const ForceControl<dim> &platens) const
   {
     if (!parameters.output.checkpoint)
       return;
     const RunScope part(communicator, RunPart::records);
+    const auto    &dof_handler = discretization.dof_handler();
+    const auto    &triangulation =
+      dynamic_cast<const Triangulation &>(dof_handler.get_triangulation());
+    const unsigned int        load_step  = discretization.scene().load_step();
+    const std::vector<double> of_platens = platens.checkpoint_numbers();
 
     Header header;
     header.dimension                       = dim;
@@ -399,14 +403,15 @@ namespace Friction
     std::ostringstream record;
     {
       boost::archive::binary_oarchive archive(record);
-      archive << header << history << fields << notes << last_exact_error;
+      archive << header << history << fields << notes << last_exact_error
+              << load_step << of_platens;
     }
     const std::string bytes = record.str();
     checkpoints.save(next_level,
                      std::vector<char>(bytes.begin(), bytes.end()),
                      triangulation,
                      dof_handler,
-                     vectors);
+                     {vectors.begin(), vectors.end()});
   }
 
 
@@ -415,21 +420,22 @@ namespace Friction
   void
   RunOutput<dim>::save_checkpoint(NestedIteration<dim> &nest) const
   {
-    const std::vector<VectorType *> guess = nest.guess();
     save_checkpoint(nest.level(),
-                    nest.mesh(),
-                    nest.discretization().dof_handler(),
-                    {guess.begin(), guess.end()});
+                    nest.discretization(),
+                    nest.checkpoint_vectors(),
+                    nest.platens());
   }
 
 
 
   template <int dim>
-  unsigned int
+  typename RunOutput<dim>::Resumption
   RunOutput<dim>::load_checkpoint(Triangulation &triangulation)
   {
     const Checkpoints::Last last  = checkpoints.find_last();
     const unsigned int      level = last.level;
+    Resumption              resumption;
+    resumption.level              = level;
     const std::vector<char> bytes = checkpoints.record(level);
     if (!last.warning.empty())
       the_console.warning(printable(last.warning));
@@ -447,8 +453,10 @@ namespace Friction
         archive >> header;
         if (header.format == checkpoint_format && header.dimension == dim)
           {
-            archive >> history >> fields >> notes >> last_exact_error;
-            difference = first_difference(header.parameters, parameters.text);
+            archive >> history >> fields >> notes >> last_exact_error >>
+              resumption.load_step >> resumption.platens;
+            difference = first_difference(
+              header.parameters, parameters.text, resumption.load_step == 0);
           }
       }
     catch (const std::exception &)
@@ -463,27 +471,36 @@ namespace Friction
       throw InputError(here + "is that of the program for " +
                        std::to_string(header.dimension) + " dimensions.");
     if (!difference.empty())
-      throw InputError(here + "belongs to another problem: '" + difference +
-                       "' has changed.");
+      throw InputError(here +
+                       (resumption.load_step == 0
+                          ? "belongs to another problem: '"
+                          : "is of a later load step, for which nothing of the "
+                            "problem, of its times and of how far to refine "
+                            "may change: '") +
+                       difference + "' has changed.");
     const double mesh = fingerprint(triangulation);
     if (std::abs(header.mesh - mesh) > 1e-10 * mesh)
       throw InputError(here + "belongs to another coarse mesh.");
 
-    // Would this run have come to that level at all?
-    const unsigned int dofs =
-      history.levels().empty() ? 0 : history.levels().back().dofs;
-    if (level > parameters.refinement.levels)
-      throw InputError(here + "is further than 'Refinement/Levels=" +
-                       std::to_string(parameters.refinement.levels) + "'.");
-    if (dofs >= parameters.refinement.maximum_dofs)
-      throw InputError(here + "is further than 'Refinement/Maximum dofs=" +
-                       std::to_string(parameters.refinement.maximum_dofs) +
-                       "'.");
+    // Would this run have come to that level at all? In later load steps levels
+    // and dofs are those of the run that wrote the checkpoint.
+    if (resumption.load_step == 0)
+      {
+        const unsigned int dofs =
+          history.levels().empty() ? 0 : history.levels().back().dofs;
+        if (level > parameters.refinement.levels)
+          throw InputError(here + "is further than 'Refinement/Levels=" +
+                           std::to_string(parameters.refinement.levels) + "'.");
+        if (dofs >= parameters.refinement.maximum_dofs)
+          throw InputError(here + "is further than 'Refinement/Maximum dofs=" +
+                           std::to_string(parameters.refinement.maximum_dofs) +
+                           "'.");
+      }
 
     checkpoints.load_mesh(level, triangulation);
     restarted = true;
     the_console.repeat(history.levels(), notes);
-    return level;
+    return resumption;
   }
 
 

@@ -114,16 +114,28 @@ namespace Friction
     /**
      * Write a checkpoint, if the parameters want any.
      *
-     * @param next_level  the level that the mesh has been refined for.
-     * @param vectors     on that mesh.
+     * @param next_level      the level that the mesh has been refined for, or
+     *                        that the load step begins with.
+     * @param discretization  on that mesh, in that load step.
+     * @param vectors         see LoadSteps::checkpoint_vectors().
+     * @param platens         of the scene.
      */
-    void save_checkpoint(const unsigned int                     next_level,
-                         const Triangulation                   &triangulation,
-                         const DoFHandler<dim>                 &dof_handler,
-                         const std::vector<const VectorType *> &vectors) const;
+    void save_checkpoint(const unsigned int               next_level,
+                         const Discretization<dim>       &discretization,
+                         const std::vector<VectorType *> &vectors,
+                         const ForceControl<dim>         &platens) const;
 
-    /** The same for the mesh that has just been refined. */
+    /** The same for the mesh that has just been refined, or the load step that
+     * has just begun. */
     void save_checkpoint(NestedIteration<dim> &nest) const;
+
+    /** Where a run goes on. */
+    struct Resumption
+    {
+      unsigned int        level     = 0;
+      unsigned int        load_step = 0;
+      std::vector<double> platens   = {}; ///< see ForceControl::restore()
+    };
 
     /**
      * Start from the last checkpoint: refines the coarse mesh as it was,
@@ -131,10 +143,8 @@ namespace Friction
      * InputError if there is none, if it belongs to another problem, or if the
      * run has already gone as far as the parameters want it to. The vectors are
      * read with Checkpoints::load_vectors().
-     *
-     * @return the level to go on with.
      */
-    unsigned int load_checkpoint(Triangulation &triangulation);
+    Resumption load_checkpoint(Triangulation &triangulation);
 
     /// What has been recorded of each level, by this run and by the one that it
     /// continues.

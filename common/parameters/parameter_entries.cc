@@ -531,10 +531,10 @@ namespace Friction
        "Checkpoint",
        "false",
        flag,
-       "Whether to write a checkpoint after each level but the last one, from "
-       "which --restart continues. Only the latest is kept, also at the end of "
-       "the run: continued with more levels, a run solves its last level once "
-       "more and goes on."},
+       "Whether to write a checkpoint after each level and each load step but "
+       "the last one, from which --restart continues. The last two are kept, "
+       "also at the end of the run: continued with more levels, a run of a "
+       "single load step solves its last level once more and goes on."},
       {"Output",
        "Verification",
        "false",

@@ -608,11 +608,6 @@ namespace Friction
                            " is not increasing: time number " +
                            std::to_string(i + 1) +
                            " is not after the one before; correct it.");
-      if (times.size() > 1 && values.flag("Output/Checkpoint"))
-        throw InputError(values.subject("Output/Checkpoint") +
-                         " is set, but a run with several times cannot be "
-                         "continued; set it to false, or take a single time in "
-                         "'Load steps/Times'.");
       return times;
     }
 
@@ -1252,8 +1247,14 @@ namespace Friction
 
 
   std::string
-  first_difference(const std::string &text, const std::string &other)
+  first_difference(const std::string &text,
+                   const std::string &other,
+                   const bool         may_be_refined)
   {
+    std::set<std::string> may_differ = {"Refinement/Estimate error"};
+    if (may_be_refined)
+      may_differ.insert({"Refinement/Levels", "Refinement/Maximum dofs"});
+
     // What one of the two does not mention has its default there.
     std::array<ParameterHandler, 2> handlers;
     std::set<unsigned int>          further;
@@ -1294,9 +1295,7 @@ namespace Friction
             sections.push_back(section_name(entry.section, number));
         for (const std::string &section : sections)
           if (section != "Solver" && section != "Output" &&
-              entry.path() != "Refinement/Levels" &&
-              entry.path() != "Refinement/Maximum dofs" &&
-              entry.path() != "Refinement/Estimate error" &&
+              may_differ.count(entry.path()) == 0 &&
               value(0, section, entry.name) != value(1, section, entry.name))
             return section + '/' + entry.name;
       }

@@ -227,7 +227,7 @@ namespace Friction
       bool        principal_stresses = false; ///< among the fields
       UnitNames   units;
       bool        forces       = false; ///< print and record those on the body
-      bool        checkpoint   = false; ///< one after each level
+      bool        checkpoint   = false; ///< one before each level but the first
       bool        verification = false; ///< write what friction-verify reads
       bool        times        = true;  ///< print what depends on the clock
       bool        profile      = false; ///< print what the solver has cost
@@ -294,11 +294,15 @@ namespace Friction
    *
    * @return the first entry that would make it another problem or another
    *   sequence of meshes, as <tt>Section/Entry</tt>; empty if there is none.
-   * How far to go (number of levels, limit on unknowns), how to solve and what
-   * to write or print may differ.
+   * How to solve and what to write or print may differ, and so may how far to
+   * go (number of levels, limit on unknowns), if there is a choice.
+   *
+   * @param may_be_refined  whether there is; in later load steps the mesh is
+   *   what it is.
    */
   std::string first_difference(const std::string &text,
-                               const std::string &other);
+                               const std::string &other,
+                               const bool         may_be_refined = true);
 
   /**
    * Print all entries with their defaults and documentation, in the format of

@@ -209,9 +209,16 @@ namespace Friction
     double
     time() const
     {
+      return time(present_step);
+    }
+
+    /// The same of any step.
+    double
+    time(const unsigned int step) const
+    {
       return parameters.load_steps.times.empty()
         ? 0.
-        : parameters.load_steps.times[present_step];
+        : parameters.load_steps.times[step];
     }
 
     /// As sentences about it begin.
