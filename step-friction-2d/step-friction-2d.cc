@@ -358,21 +358,23 @@ namespace StepFriction2d
 
     // A scene may give the total force on a part of the boundary instead of its
     // displacement. Then <code>ForceControl</code> moves this part, compares
-    // its reaction with the force, and solves again; without such a part it
-    // solves once.
+    // its reaction with the force, and solves again, roughly as long as the
+    // reaction is far from what it should be; without such a part it solves
+    // once.
     timer.restart();
     report = force_control.solve(
       discretization,
       displacement,
       state,
       settings.certificate_tolerance,
-      [&]() {
+      [&](const double accuracy) {
         return solver.solve(
           displacement,
           state,
           [&](const unsigned int cycle, const double increment) {
             output.console().progress(level, cycle, increment);
-          });
+          },
+          accuracy);
       });
     solve_seconds = timer.wall_time();
 

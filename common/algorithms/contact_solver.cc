@@ -72,9 +72,10 @@ namespace Friction
   SolverReport
   ContactSolver<dim>::solve(VectorType     &u,
                             ContactState   &state,
-                            const Progress &progress)
+                            const Progress &progress,
+                            const double    accuracy)
   {
-    return safeguarded.solve(u, state, progress);
+    return safeguarded.solve(u, state, progress, accuracy);
   }
 
 

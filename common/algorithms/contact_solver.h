@@ -31,8 +31,10 @@ namespace Friction
     ContactSolver(const ContactSolver &) = delete;
 
     /** See SafeguardedSolver::solve(). Collective. */
-    SolverReport
-    solve(VectorType &u, ContactState &state, const Progress &progress = {});
+    SolverReport solve(VectorType     &u,
+                       ContactState   &state,
+                       const Progress &progress = {},
+                       const double    accuracy = 0.);
 
     /** The parts put together. */
     MonotoneMultigrid<dim> &

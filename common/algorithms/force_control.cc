@@ -23,6 +23,11 @@ namespace Friction
     // By what factor the compliance may grow in one step, and a step with it.
     constexpr double growth = 10.;
 
+    // Up to which relative increments the first solution in a new situation is
+    // iterated, and others, relative to what is missing of the forces. Forces
+    // are believed to be wrong by ten times the increments at most.
+    constexpr double rough = 1e-3, rough_share = .01, mistrust = 10.;
+
     // A trial that does not converge is taken back in part, so many times.
     constexpr unsigned int maximum_retreats = 3;
 
@@ -273,25 +278,26 @@ namespace Friction
 
   template <int dim>
   SolverReport
-  ForceControl<dim>::solve(Discretization<dim>                 &discretization,
-                           VectorType                          &u,
-                           ContactState                        &state,
-                           const double                         tolerance,
-                           const std::function<SolverReport()> &solve_once)
+  ForceControl<dim>::solve(Discretization<dim> &discretization,
+                           VectorType          &u,
+                           ContactState        &state,
+                           const double         tolerance,
+                           const SolveOnce     &solve_once)
   {
     if (!has_platens())
-      return solve_once();
+      return solve_once(0.);
 
     const MPI_Comm   communicator = discretization.constraints().communicator();
     const PhaseCosts costs_before = phase_costs(communicator);
     const PlatenDofs dofs         = find_dofs(discretization);
     const double     body_size    = discretization.body_size();
     const unsigned int n          = controls.size();
+    double             accuracy   = compliance.size() > 0 ? rough : 0.;
     if (compliance.size() == 0)
       begin_with_stiffness_of_body(discretization, dofs);
     wanted                   = given_forces();
-    SolverReport report      = solve_once();
-    unsigned int n_solutions = 1;
+    SolverReport report      = solve_once(accuracy);
+    unsigned int n_solutions = 1, n_poor = 0;
 
     // The residual is what is left of the loads; the force of what holds the
     // body is opposite to it.
@@ -309,22 +315,45 @@ namespace Friction
                   forces.cwiseAbs().maxCoeff(),
                   other_forces(discretization, report.residual)})};
     };
+    const auto solve_on = [&]() {
+      SolverReport next = solve_once(accuracy);
+      next.add_earlier(report);
+      next.costs = phase_costs(communicator) - costs_before;
+      report     = std::move(next);
+      ++n_solutions;
+    };
+
+    // As long as much is missing, it need not be known exactly: a rough
+    // solution will do, and is iterated on where it says too little.
+    const auto set_accuracy_for = [&](const Sample &s) {
+      accuracy = std::min(rough, rough_share * s.error() / s.unit);
+      if (n_poor > 0 || accuracy <= tolerance)
+        accuracy = 0.;
+    };
+    const auto reliable_sample = [&]() {
+      Sample result = sample();
+      while (report.converged && accuracy > 0. &&
+             result.error() <= mistrust * accuracy * result.unit)
+        {
+          set_accuracy_for(result);
+          solve_on();
+          result = sample();
+        }
+      return result;
+    };
     const auto solve_at = [&](const Eigen::VectorXd &s, const Sample &guess) {
       move_to(s);
       discretization.update_prescribed_values();
       u     = guess.displacement;
       state = make_initial_guess(discretization, u, guess.tractions);
-      SolverReport next = solve_once();
-      next.add_earlier(report);
-      next.costs = phase_costs(communicator) - costs_before;
-      report     = std::move(next);
-      ++n_solutions;
-      return sample();
+      solve_on();
+      return reliable_sample();
     };
 
     // The derivative at a point, for which there is one solution more for each
     // position.
     const auto differentiate = [&](const Sample &at, const double step) {
+      accuracy = 0.;
       const double h =
         std::max(.01 * step, 1e-4 * at.positions.cwiseAbs().maxCoeff());
       Eigen::MatrixXd stiffness(n, n);
@@ -343,10 +372,10 @@ namespace Friction
 
     if (!report.converged)
       return report;
-    Sample       best = sample(), other = best;
+    Sample       best = reliable_sample(), other = best;
     Bracket      bracket;
-    double       damping = 1.;
-    unsigned int n_poor = 0, n_retreats = 0;
+    double       damping        = 1.;
+    unsigned int n_retreats     = 0;
     bool         by_differences = false;
     if (n == 1)
       bracket.add(best.positions[0], best.missing[0]);
@@ -372,6 +401,7 @@ namespace Friction
             guess.displacement.local_element(i) += step[0] / change *
               (best.displacement.local_element(i) -
                other.displacement.local_element(i));
+        set_accuracy_for(best);
         Sample now = solve_at(next, guess);
 
         // Too far at once, perhaps.
@@ -406,6 +436,8 @@ namespace Friction
         else if (n > 1 && n_poor > 2 &&
                  best.forces.cwiseAbs().maxCoeff() > 1e-9 * best.unit)
           {
+            accuracy = 0.;
+            best     = solve_at(best.positions, best);
             differentiate(best, step.cwiseAbs().maxCoeff());
             by_differences = true;
             n_poor         = 0;

@@ -28,6 +28,9 @@ namespace Friction
    * learnt is kept from one mesh, and from one load step, to the next. So a
    * fine mesh takes few solutions more, each from a good guess.
    *
+   * As long as forces are far from what they should be, they need not be known
+   * better than that: solutions on the way are solved roughly.
+   *
    * A body that is not touched yet gives no resistance; steps then grow tenfold
    * until something is met. A single position is enclosed by what has been
    * tried, since the force grows with it, and halved where the secant method
@@ -37,6 +40,8 @@ namespace Friction
   class ForceControl
   {
   public:
+    using SolveOnce = std::function<SolverReport(const double accuracy)>;
+
     /** @param scene  whose platens are moved; kept by reference. */
     explicit ForceControl(Scene<dim> &scene);
 
@@ -58,7 +63,9 @@ namespace Friction
      * @param tolerance   of a force, relative to the largest force on the body
      *                    that there has been.
      * @param solve_once  solves with the displacements that are prescribed now,
-     *                    from the guess that @p u and @p state are.
+     *                    from the guess that @p u and @p state are, up to
+     *                    relative increments of its argument; zero: as well as
+     *                    the caller wants the solution.
      * @return the report of the last solution, with the cycles of all. If it
      * has not converged, platens, u and state are those of that attempt.
      *
@@ -66,11 +73,11 @@ namespace Friction
      * have to be moved farther than the body is large, or if a part of it is
      * held by something else. Collective.
      */
-    SolverReport solve(Discretization<dim>                 &discretization,
-                       VectorType                          &u,
-                       ContactState                        &state,
-                       const double                         tolerance,
-                       const std::function<SolverReport()> &solve_once);
+    SolverReport solve(Discretization<dim> &discretization,
+                       VectorType          &u,
+                       ContactState        &state,
+                       const double         tolerance,
+                       const SolveOnce     &solve_once);
 
     /** Where the platens are, and all that has been learnt, in numbers for
      * restore(), which takes those of the same scene. The discretisation has to

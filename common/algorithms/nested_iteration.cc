@@ -82,7 +82,9 @@ namespace Friction
       solution,
       state,
       settings.certificate_tolerance,
-      [&]() { return solver.solve(solution, state, progress); });
+      [&](const double accuracy) {
+        return solver.solve(solution, state, progress, accuracy);
+      });
     solution_seconds = timer.wall_time();
     the_discretization.interpolate_hanging_nodes(solution);
     return report;

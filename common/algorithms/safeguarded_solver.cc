@@ -249,10 +249,17 @@ namespace Friction
   SolverReport
   SafeguardedSolver<dim>::solve(VectorType     &u,
                                 ContactState   &state,
-                                const Progress &progress)
+                                const Progress &progress,
+                                const double    accuracy)
   {
     const RunScope  part(problem.communicator(), RunPart::solution);
     CoulombSettings first(settings);
+    if (accuracy > 0.)
+      {
+        first.limits.inner_tolerance =
+          std::max(accuracy, first.limits.inner_tolerance);
+        first.certificate_tolerance = std::numeric_limits<double>::infinity();
+      }
     if (!settings.safeguards)
       return CoulombSolver<dim>(iteration, first).solve(u, state, progress);
 

@@ -65,9 +65,14 @@ namespace Friction
      * is that of the last attempt, with the cycles of all of them; if none has
      * succeeded, residual, energy and certificate are those of what is
      * returned.
+     * @param accuracy  if it is positive, relative increments of this size are
+     *                  small enough, and certificates are not looked at: for
+     *                  solutions on the way to the one that is wanted.
      */
-    SolverReport
-    solve(VectorType &u, ContactState &state, const Progress &progress = {});
+    SolverReport solve(VectorType     &u,
+                       ContactState   &state,
+                       const Progress &progress = {},
+                       const double    accuracy = 0.);
 
   private:
     DiscreteProblem<dim>   &problem;
