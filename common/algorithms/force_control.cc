@@ -25,8 +25,8 @@ namespace Friction
 
     // Up to which relative increments the first solution in a new situation is
     // iterated, and others, relative to what is missing of the forces. Forces
-    // are believed to be wrong by ten times the increments at most.
-    constexpr double rough = 1e-3, rough_share = .01, mistrust = 10.;
+    // are believed to be wrong by three times the increments at most.
+    constexpr double rough = 3e-3, rough_share = .05, mistrust = 3.;
 
     // A trial that does not converge is taken back in part, so many times.
     constexpr unsigned int maximum_retreats = 3;
