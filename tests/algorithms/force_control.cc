@@ -194,7 +194,7 @@ namespace
   resume()
   {
     const std::vector<std::string> entries = {
-      "Load steps/Times=0, 1, 2, 4",
+      "Load steps/Times=0, 1, 2, 3",
       "Scene/Constants=L = 2; H = 1; gap = 0",
       "Scene/Definitions=d = 0.02 + 0.002*t; p = (lambda + 2*mu)*d/H; side = "
       "-lambda*d/H; U = 0.01*t; slip = 0; q = mu*U/H",
