@@ -18,14 +18,15 @@ namespace Friction
 {
   namespace
   {
-    constexpr unsigned int maximum_solutions = 60;
+    constexpr unsigned int maximum_positions = 60;
 
     // By what factor the compliance may grow in one step, and a step with it.
     constexpr double growth = 10.;
 
-    // Up to which relative increments the first solution in a new situation is
-    // iterated, and others, relative to what is missing of the forces. Forces
-    // are believed to be wrong by three times the increments at most.
+    // Relative increments of a rough solution: the first number at most, and
+    // this share of what is missing of the forces. These are believed to be
+    // wrong by three times the increments, which is true if an iteration does
+    // not converge slowly; where it is not, see below.
     constexpr double rough = 3e-3, rough_share = .05, mistrust = 3.;
 
     // A trial that does not converge is taken back in part, so many times.
@@ -292,12 +293,12 @@ namespace Friction
     const PlatenDofs dofs         = find_dofs(discretization);
     const double     body_size    = discretization.body_size();
     const unsigned int n          = controls.size();
-    double             accuracy   = compliance.size() > 0 ? rough : 0.;
+    double accuracy = compliance.size() > 0 && rough > tolerance ? rough : 0.;
     if (compliance.size() == 0)
       begin_with_stiffness_of_body(discretization, dofs);
     wanted                   = given_forces();
     SolverReport report      = solve_once(accuracy);
-    unsigned int n_solutions = 1, n_poor = 0;
+    unsigned int n_positions = 1, n_poor = 0;
 
     // The residual is what is left of the loads; the force of what holds the
     // body is opposite to it.
@@ -310,6 +311,7 @@ namespace Friction
         wanted - forces,
         u,
         contact_tractions(discretization.contact(), report.residual, state),
+        accuracy,
         std::max({unit,
                   wanted.cwiseAbs().maxCoeff(),
                   forces.cwiseAbs().maxCoeff(),
@@ -320,13 +322,13 @@ namespace Friction
       next.add_earlier(report);
       next.costs = phase_costs(communicator) - costs_before;
       report     = std::move(next);
-      ++n_solutions;
     };
 
     // As long as much is missing, it need not be known exactly: a rough
     // solution will do, and is iterated on where it says too little.
     const auto set_accuracy_for = [&](const Sample &s) {
-      accuracy = std::min(rough, rough_share * s.error() / s.unit);
+      accuracy =
+        s.unit > 0 ? std::min(rough, rough_share * s.error() / s.unit) : 0.;
       if (n_poor > 0 || accuracy <= tolerance)
         accuracy = 0.;
     };
@@ -347,6 +349,7 @@ namespace Friction
       u     = guess.displacement;
       state = make_initial_guess(discretization, u, guess.tractions);
       solve_on();
+      ++n_positions;
       return reliable_sample();
     };
 
@@ -372,7 +375,9 @@ namespace Friction
 
     if (!report.converged)
       return report;
-    Sample       best = reliable_sample(), other = best;
+    Sample best = reliable_sample(), other = best;
+    if (!report.converged)
+      return report;
     Bracket      bracket;
     double       damping        = 1.;
     unsigned int n_retreats     = 0;
@@ -388,7 +393,7 @@ namespace Friction
         if (n_retreats > 0)
           step *= std::pow(.25, n_retreats);
         const Eigen::VectorXd next = best.positions + step;
-        if (n_solutions >= maximum_solutions ||
+        if (n_positions >= maximum_positions ||
             next.cwiseAbs().maxCoeff() > body_size)
           give_up(best);
 
@@ -414,6 +419,21 @@ namespace Friction
         n_retreats           = 0;
         n_poor               = now.error() < .5 * best.error() ? 0 : n_poor + 1;
         const bool is_better = now.error() < .9 * best.error();
+
+        // The best one may be worse than it was believed to be. Then nothing of
+        // what has been tried is sure.
+        if (!is_better && best.accuracy > 0.)
+          {
+            accuracy = 0.;
+            best     = solve_at(best.positions, best);
+            if (!report.converged)
+              return report;
+            other   = best;
+            bracket = Bracket();
+            if (n == 1)
+              bracket.add(best.positions[0], best.missing[0]);
+            continue;
+          }
         if (n == 1)
           bracket.add(now.positions[0], now.missing[0]);
         if (is_better || !by_differences)
@@ -436,8 +456,6 @@ namespace Friction
         else if (n > 1 && n_poor > 2 &&
                  best.forces.cwiseAbs().maxCoeff() > 1e-9 * best.unit)
           {
-            accuracy = 0.;
-            best     = solve_at(best.positions, best);
             differentiate(best, step.cwiseAbs().maxCoeff());
             by_differences = true;
             n_poor         = 0;

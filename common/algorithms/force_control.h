@@ -26,7 +26,7 @@ namespace Friction
    * held, $e^TAe$ with the displacement $e$ of the platen; this is far too
    * stiff, so that the first step is too short, and never too long. What is
    * learnt is kept from one mesh, and from one load step, to the next. So a
-   * fine mesh takes few solutions more, each from a good guess.
+   * fine mesh takes few positions more, each from a good guess.
    *
    * As long as forces are far from what they should be, they need not be known
    * better than that: solutions on the way are solved roughly.
@@ -69,7 +69,7 @@ namespace Friction
      * @return the report of the last solution, with the cycles of all. If it
      * has not converged, platens, u and state are those of that attempt.
      *
-     * Throws InputError if sixty solutions are not enough, if a platen would
+     * Throws InputError if sixty positions are not enough, if a platen would
      * have to be moved farther than the body is large, or if a part of it is
      * held by something else. Collective.
      */
@@ -101,6 +101,7 @@ namespace Friction
     {
       Eigen::VectorXd positions, forces, missing;
       VectorType      displacement, tractions;
+      double          accuracy; ///< of its solution; zero: no rough one
 
       /// The largest force on the body, of this one and of solutions before.
       double unit;

@@ -258,6 +258,7 @@ namespace Friction
       {
         first.limits.inner_tolerance =
           std::max(accuracy, first.limits.inner_tolerance);
+        first.outer_tolerance       = std::max(accuracy, first.outer_tolerance);
         first.certificate_tolerance = std::numeric_limits<double>::infinity();
       }
     if (!settings.safeguards)

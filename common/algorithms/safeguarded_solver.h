@@ -66,8 +66,9 @@ namespace Friction
      * succeeded, residual, energy and certificate are those of what is
      * returned.
      * @param accuracy  if it is positive, relative increments of this size are
-     *                  small enough, and certificates are not looked at: for
-     *                  solutions on the way to the one that is wanted.
+     *                  small enough for the first attempt, and its certificate
+     *                  is not looked at: for solutions on the way to the one
+     *                  that is wanted.
      */
     SolverReport solve(VectorType     &u,
                        ContactState   &state,
