@@ -25,9 +25,9 @@ namespace Friction
 
     // Relative increments of a rough solution: the first number at most, and
     // this share of what is missing of the forces. These are believed to be
-    // wrong by three times the increments, which is true if an iteration does
-    // not converge slowly; where it is not, see below.
-    constexpr double rough = 3e-3, rough_share = .05, mistrust = 3.;
+    // wrong by as much, which is true if an iteration does not converge slowly;
+    // where it is not, see below.
+    constexpr double rough = 3e-3, rough_share = .2;
 
     // A trial that does not converge is taken back in part, so many times.
     constexpr unsigned int maximum_retreats = 3;
@@ -327,15 +327,15 @@ namespace Friction
     // As long as much is missing, it need not be known exactly: a rough
     // solution will do, and is iterated on where it says too little.
     const auto set_accuracy_for = [&](const Sample &s) {
-      accuracy =
-        s.unit > 0 ? std::min(rough, rough_share * s.error() / s.unit) : 0.;
-      if (n_poor > 0 || accuracy <= tolerance)
-        accuracy = 0.;
+      const bool is_found = s.error() <= tolerance * s.unit;
+      accuracy            = is_found || n_poor > 1
+                   ? 0.
+                   : std::min(rough, rough_share * s.error() / s.unit);
     };
     const auto reliable_sample = [&]() {
       Sample result = sample();
       while (report.converged && accuracy > 0. &&
-             result.error() <= mistrust * accuracy * result.unit)
+             result.error() <= std::max(accuracy, tolerance) * result.unit)
         {
           set_accuracy_for(result);
           solve_on();
@@ -397,13 +397,15 @@ namespace Friction
             next.cwiseAbs().maxCoeff() > body_size)
           give_up(best);
 
-        // The guess: what the last change of a single position has changed,
-        // once more. On a mesh for the first time only the platen is moved.
-        Sample       guess  = best;
-        const double change = best.positions[0] - other.positions[0];
-        if (n == 1 && change != 0.)
+        // The guess: what the last change of positions has changed, as far as
+        // this one goes the same way. On a mesh for the first time only the
+        // platen is moved.
+        Sample                guess  = best;
+        const Eigen::VectorXd change = best.positions - other.positions;
+        const double          length = change.squaredNorm();
+        if (length > 0.)
           for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-            guess.displacement.local_element(i) += step[0] / change *
+            guess.displacement.local_element(i) += step.dot(change) / length *
               (best.displacement.local_element(i) -
                other.displacement.local_element(i));
         set_accuracy_for(best);
@@ -422,7 +424,7 @@ namespace Friction
 
         // The best one may be worse than it was believed to be. Then nothing of
         // what has been tried is sure.
-        if (!is_better && best.accuracy > 0.)
+        if (!is_better && n_poor > 1 && best.accuracy > 0.)
           {
             accuracy = 0.;
             best     = solve_at(best.positions, best);

@@ -44,6 +44,8 @@ class Level:
                 # With several load steps.
                 self.load_step = int(file.attrs.get("load_step", 1))
                 self.time = file.attrs.get("time")
+                # On the body, up to this level: found out by the checks.
+                self.largest_force = 0.
                 data = {name: item[()] for name, item in file.items()}
             self._take(data)
         except (OSError, KeyError, ValueError, IndexError) as error:
