@@ -62,11 +62,8 @@ namespace StepFriction3d
                                   nest.checkpoint_vectors());
         nest.resume();
         for (const LevelRecord &record : output.levels())
-          if (record.load_step == 1 &&
-              record.level < nest.parameters().refinement.levels &&
-              record.dofs < nest.parameters().refinement.maximum_dofs)
-            nest.add_level(
-              record.error_at_least, record.dofs, record.contraction);
+          nest.add_level(
+            record.error_at_least, record.dofs, record.contraction);
       }
     output.check_start(nest.discretization());
   }
@@ -107,6 +104,7 @@ namespace StepFriction3d
     ErrorEstimate estimate;
     if (nest.wants_estimate())
       estimate = nest.estimate();
+    nest.learn(estimate);
     output.add_level(nest, estimate);
     return estimate;
   }

@@ -279,11 +279,11 @@ namespace Friction
 
   template <int dim>
   SolverReport
-  ForceControl<dim>::solve(Discretization<dim> &discretization,
-                           VectorType          &u,
-                           ContactState        &state,
-                           const double         tolerance,
-                           const SolveOnce     &solve_once)
+  ForceControl<dim>::solve(Discretization<dim>  &discretization,
+                           VectorType           &u,
+                           ContactState         &state,
+                           const SolverSettings &settings,
+                           const SolveOnce      &solve_once)
   {
     if (!has_platens())
       return solve_once(0.);
@@ -293,6 +293,7 @@ namespace Friction
     const PlatenDofs dofs         = find_dofs(discretization);
     const double     body_size    = discretization.body_size();
     const unsigned int n          = controls.size();
+    const double       tolerance  = settings.certificate_tolerance;
     double accuracy = compliance.size() > 0 && rough > tolerance ? rough : 0.;
     if (compliance.size() == 0)
       begin_with_stiffness_of_body(discretization, dofs);
@@ -324,18 +325,26 @@ namespace Friction
       report     = std::move(next);
     };
 
+    // The energy that has been asked for is that of the difference of two
+    // solutions: the force that is missing times the way that it needs.
+    const auto is_found = [&](const Sample &s) {
+      return s.error() <= tolerance * s.unit &&
+        (settings.energy_tolerance == 0. ||
+         std::sqrt(std::abs(s.missing.dot(compliance * s.missing))) <=
+           settings.energy_tolerance);
+    };
+
     // As long as much is missing, it need not be known exactly: a rough
     // solution will do, and is iterated on where it says too little.
     const auto set_accuracy_for = [&](const Sample &s) {
-      const bool is_found = s.error() <= tolerance * s.unit;
-      accuracy            = is_found || n_poor > 1
-                   ? 0.
-                   : std::min(rough, rough_share * s.error() / s.unit);
+      accuracy = is_found(s) || n_poor > 1
+        ? 0.
+        : std::min(rough, rough_share * s.error() / s.unit);
     };
     const auto reliable_sample = [&]() {
       Sample result = sample();
       while (report.converged && accuracy > 0. &&
-             result.error() <= std::max(accuracy, tolerance) * result.unit)
+             (is_found(result) || result.error() <= accuracy * result.unit))
         {
           set_accuracy_for(result);
           solve_on();
@@ -384,7 +393,7 @@ namespace Friction
     bool         by_differences = false;
     if (n == 1)
       bracket.add(best.positions[0], best.missing[0]);
-    while (best.error() > tolerance * best.unit)
+    while (!is_found(best))
       {
         Eigen::VectorXd step = damping * compliance * best.missing;
         if (n == 1)

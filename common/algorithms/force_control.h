@@ -4,6 +4,7 @@
 #include <common/algorithms/solver_report.h>
 #include <common/contact/contact_state.h>
 #include <common/discretization/discretization.h>
+#include <common/parameters/solver_settings.h>
 #include <common/scene/scene.h>
 
 #include <Eigen/Core>
@@ -60,8 +61,10 @@ namespace Friction
      * @param u      displacement: what solve_once solves for, and, on call, its
      *               initial guess.
      * @param state  the same of the contact nodes.
-     * @param tolerance   of a force, relative to the largest force on the body
-     *                    that there has been.
+     * @param settings  of what solve_once solves with. Forces are found up to
+     *               the tolerance of the certificate, relative to the largest
+     *               force on the body that there has been, and, if it has been
+     *               asked for, to the energy of the error.
      * @param solve_once  solves with the displacements that are prescribed now,
      *                    from the guess that @p u and @p state are, up to
      *                    relative increments of its argument; zero: as well as
@@ -73,11 +76,11 @@ namespace Friction
      * have to be moved farther than the body is large, or if a part of it is
      * held by something else. Collective.
      */
-    SolverReport solve(Discretization<dim> &discretization,
-                       VectorType          &u,
-                       ContactState        &state,
-                       const double         tolerance,
-                       const SolveOnce     &solve_once);
+    SolverReport solve(Discretization<dim>  &discretization,
+                       VectorType           &u,
+                       ContactState         &state,
+                       const SolverSettings &settings,
+                       const SolveOnce      &solve_once);
 
     /** Where the platens are, and all that has been learnt, in numbers for
      * restore(), which takes those of the same scene. The discretisation has to

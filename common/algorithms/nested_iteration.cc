@@ -81,7 +81,7 @@ namespace Friction
       the_discretization,
       solution,
       state,
-      settings.certificate_tolerance,
+      settings,
       [&](const double accuracy) {
         return solver.solve(solution, state, progress, accuracy);
       });
@@ -157,6 +157,17 @@ namespace Friction
 
   template <int dim>
   void
+  NestedIteration<dim>::learn(const ErrorEstimate &estimate)
+  {
+    add_level(estimate.lower_bound,
+              the_discretization.dof_handler().n_dofs(),
+              last_report.contraction);
+  }
+
+
+
+  template <int dim>
+  void
   NestedIteration<dim>::add_level(const double error_at_least,
                                   const dealii::types::global_dof_index n_dofs,
                                   const double contraction)
@@ -191,9 +202,6 @@ namespace Friction
   bool
   NestedIteration<dim>::mark(const ErrorEstimate &estimate)
   {
-    stop.add_level(estimate.lower_bound,
-                   the_discretization.dof_handler().n_dofs(),
-                   last_report.contraction);
     if (the_parameters.refinement.strategy == RefinementStrategy::uniform)
       {
         mark_all();
@@ -232,7 +240,10 @@ namespace Friction
   {
     if (is_last())
       return false;
-    if (!mark(needs_estimate() ? estimate() : ErrorEstimate()))
+    const ErrorEstimate estimated =
+      needs_estimate() ? estimate() : ErrorEstimate();
+    learn(estimated);
+    if (!mark(estimated))
       return false;
     refine();
     return true;

@@ -94,8 +94,13 @@ namespace Friction
     /** Of the accepted solution. */
     ErrorEstimate estimate() const;
 
-    /** For the next mesh: what is known of the meshes of a run that is
-     * continued, see DiscretizationStop::add_level(). */
+    /** For the next solution, if it is to be as good as the mesh makes
+     * sensible: the estimate of this one, or an empty one, which makes the next
+     * as good as the parameters say. */
+    void learn(const ErrorEstimate &estimate);
+
+    /** The same of all solutions before, in a run that is continued; see
+     * DiscretizationStop::add_level(). */
     void add_level(const double                          error_at_least,
                    const dealii::types::global_dof_index n_dofs,
                    const double                          contraction);
@@ -106,9 +111,7 @@ namespace Friction
 
     /**
      * Flags cells for refinement as the parameters say.
-     * @param estimate  of this mesh; only needed if refinement is adaptive, or
-     *                  if the next mesh is to be solved as well as this makes
-     *                  sensible.
+     * @param estimate  of this mesh; only needed if refinement is adaptive.
      * @return whether there is anything to refine.
      */
     bool mark(const ErrorEstimate &estimate);

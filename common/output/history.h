@@ -42,7 +42,7 @@ namespace Friction
     unsigned int attempts = 1;
 
     /// Mean contraction of the increments per cycle; zero if there was but one
-    /// cycle.
+    /// cycle. Where forces are given, that of the last solution for them.
     double contraction = 0.;
 
     /// Algorithm 2: contraction of the relative changes of the normal forces,

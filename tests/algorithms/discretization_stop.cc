@@ -93,6 +93,54 @@ namespace
 
 
 
+  // What is missing of a force that is given is an error of the iteration, too.
+  template <int dim>
+  void
+  test_with_force(const std::string &scene,
+                  const std::string &force,
+                  const std::string &start,
+                  const std::string &levels)
+  {
+    std::cout << "Scene " << scene << " with a force" << std::endl;
+    const auto make = [&](const std::string &tolerance) {
+      return without_safeguards(read_parameters(
+        (dim == 2 ? SCENES_DIR "/" : SCENES_3D_DIR "/") + scene + ".prm",
+        {"Refinement/Strategy=uniform",
+         "Boundary conditions/Force=" + force,
+         "Boundary conditions/Displacement=" + start,
+         "Solver/Inner tolerance=" + tolerance,
+         levels}));
+    };
+    NestedIteration<dim> tight(make("1e-12")), stopped(make("discretisation"));
+    tight.begin();
+    stopped.begin();
+
+    double       share    = 0;
+    unsigned int n_cycles = 0, n_tight_cycles = 0;
+    bool         converged = true;
+    do
+      {
+        converged             = tight.solve().converged && converged;
+        converged             = stopped.solve().converged && converged;
+        VectorType difference = tight.displacement();
+        difference -= stopped.displacement();
+        const double error = energy_norm<dim>(
+          tight.discretization().stiffness().blocks(), difference);
+        share = std::max(share, error / stopped.estimate().total);
+        if (stopped.level() > 0)
+          {
+            n_cycles += stopped.report().cycles.size();
+            n_tight_cycles += tight.report().cycles.size();
+          }
+    } while (tight.advance() && stopped.advance());
+    check(converged, "all meshes are solved");
+    check_below(share, .05 / 8., "error of the iteration over estimated error");
+    check_below(
+      double(n_cycles) / n_tight_cycles, .5, "cycles over those to rounding");
+  }
+
+
+
   void
   test_overestimated(const std::string              &name,
                      const std::vector<std::string> &overrides,
@@ -150,6 +198,12 @@ main(int argc, char *argv[])
   test<3>("cylinder",
           {"Refinement/Initial refinements=1", "Refinement/Maximum dofs=2000"});
   test<3>("block", {}, true);
+  test_with_force<2>(
+    "hertz", "1: free, -0.003", "1: 0, -0.001", "Refinement/Levels=5");
+  test_with_force<3>("half-ball",
+                     "1: free, free, -0.0012",
+                     "1: 0, 0, -0.02",
+                     "Refinement/Levels=2");
   for (const std::string strain : {"pointwise", "mean"})
     test_overestimated(
       "Poisson ratio 0.49, strains " + strain,

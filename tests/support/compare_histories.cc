@@ -1,9 +1,10 @@
 // Compares the protocols of two runs of the same scene, the second of them on
 // more processes: the same levels, the same numbers of cells, unknowns, and
 // nodes in contact and sticking, energies to ten digits, and at most two cycles
-// more per level (with Algorithm 2: per outer iteration, each of which is a
-// solution of its own). On meshes with fewer than 300 unknowns per process,
-// where next to all nodes are at an interface, it may be half as many more.
+// more per level (with Algorithm 2 per outer iteration, with given forces per
+// position of their platens: each of these is a solution of its own). On meshes
+// with fewer than 300 unknowns per process, where next to all nodes are at an
+// interface, it may be half as many more.
 //
 // Usage: compare_histories HISTORY HISTORY PROCESSES
 
