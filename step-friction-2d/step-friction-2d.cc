@@ -366,7 +366,7 @@ namespace StepFriction2d
       discretization,
       displacement,
       state,
-      settings.certificate_tolerance,
+      settings,
       [&](const double accuracy) {
         return solver.solve(
           displacement,
