@@ -549,7 +549,8 @@ namespace StepFriction2d
 
         // This is the moment for a checkpoint, if the scene wants any: a mesh
         // and two vectors on it are all that the next level needs of those
-        // before, and in a history what the load step before has come to. With
+        // before, and in a history what the load step before has come to, and
+        // where the platens are if there are any. With
         // what has been recorded so far, a run continued with
         // <code>--restart</code> ends with the same files as any other.
         output.save_checkpoint(level + 1,

@@ -33,8 +33,9 @@ namespace StepFriction3d
 
   // On the first mesh the body is undeformed. A checkpoint holds the
   // refinements of a mesh and the two vectors that had been interpolated to it,
-  // and in a history what the load step before has come to; any number of
-  // processes may have written it, and any other may read it.
+  // in a history what the load step before has come to, and where platens are
+  // if there are any; any number of processes may have written it, and any
+  // other may read it.
   //
   // The discretisation then finds the nodes that may touch
   // (<code>ContactBoundary</code>). Several bilinear faces meet in a node,

@@ -24,10 +24,14 @@ namespace Friction
     constexpr double growth = 10.;
 
     // Relative increments of a rough solution: the first number at most, and
-    // this share of what is missing of the forces. These are believed to be
+    // this share of what is missing of the forces. Forces are believed to be
     // wrong by as much, which is true if an iteration does not converge slowly;
     // where it is not, see below.
     constexpr double rough = 3e-3, rough_share = .2;
+
+    // A force that is known like this, relatively, is found, however small the
+    // error is that has been asked for.
+    constexpr double well_known = 1e-6;
 
     // A trial that does not converge is taken back in part, so many times.
     constexpr unsigned int maximum_retreats = 3;
@@ -35,17 +39,31 @@ namespace Friction
 
 
     // Where a single position is, as far as it is known: the force grows with
-    // it.
+    // it. Of several there is nothing to enclose.
     class Bracket
     {
     public:
+      template <typename Sample>
       void
-      add(const double position, const double missing)
+      add(const Sample &sample)
       {
-        if (missing > 0)
-          lower = std::max(lower, position);
-        else
-          upper = std::min(upper, position);
+        if (sample.positions.size() != 1)
+          return;
+        const double position = sample.positions[0];
+        const bool   is_lower = sample.missing[0] > 0;
+        End         &end      = is_lower ? lower : upper;
+        if (is_lower ? position >= end.position : position <= end.position)
+          end = {position, sample.accuracy > 0.};
+      }
+
+      // What rough solutions have said.
+      void
+      forget_rough_ends()
+      {
+        if (lower.is_rough)
+          lower = Bracket().lower;
+        if (upper.is_rough)
+          upper = Bracket().upper;
       }
 
       // The position to be tried next: the one that is proposed, unless it is
@@ -53,15 +71,22 @@ namespace Friction
       double
       next(const double proposed, const bool is_useless) const
       {
-        const bool is_closed = std::isfinite(lower) && std::isfinite(upper);
-        const bool is_inside = proposed > lower && proposed < upper;
-        return is_closed && (!is_inside || is_useless) ? .5 * (lower + upper)
+        const double from = lower.position, to = upper.position;
+        const bool   is_closed = std::isfinite(from) && std::isfinite(to);
+        const bool   is_inside = proposed > from && proposed < to;
+        return is_closed && (!is_inside || is_useless) ? .5 * (from + to)
                                                        : proposed;
       }
 
     private:
-      double lower = -std::numeric_limits<double>::infinity(),
-             upper = std::numeric_limits<double>::infinity();
+      struct End
+      {
+        double position;
+        bool   is_rough;
+      };
+
+      End lower = {-std::numeric_limits<double>::infinity(), false},
+          upper = {std::numeric_limits<double>::infinity(), false};
     };
   } // namespace
 
@@ -294,7 +319,8 @@ namespace Friction
     const double     body_size    = discretization.body_size();
     const unsigned int n          = controls.size();
     const double       tolerance  = settings.certificate_tolerance;
-    double accuracy = compliance.size() > 0 && rough > tolerance ? rough : 0.;
+    const bool         may_be_rough = rough > tolerance;
+    double accuracy = compliance.size() > 0 && may_be_rough ? rough : 0.;
     if (compliance.size() == 0)
       begin_with_stiffness_of_body(discretization, dofs);
     wanted                   = given_forces();
@@ -302,21 +328,31 @@ namespace Friction
     unsigned int n_positions = 1, n_poor = 0;
 
     // The residual is what is left of the loads; the force of what holds the
-    // body is opposite to it.
+    // body is opposite to it. The energy that has been asked for is that of the
+    // difference of two solutions: the force that is missing times the way that
+    // it needs.
     const auto sample = [&]() {
-      const Eigen::VectorXd forces =
-        -sums_over(dofs, report.residual, communicator);
-      return Sample{
-        positions(),
-        forces,
-        wanted - forces,
-        u,
-        contact_tractions(discretization.contact(), report.residual, state),
-        accuracy,
-        std::max({unit,
-                  wanted.cwiseAbs().maxCoeff(),
-                  forces.cwiseAbs().maxCoeff(),
-                  other_forces(discretization, report.residual)})};
+      Sample result;
+      result.positions    = positions();
+      result.forces       = -sums_over(dofs, report.residual, communicator);
+      result.missing      = wanted - result.forces;
+      result.displacement = u;
+      result.tractions =
+        contact_tractions(discretization.contact(), report.residual, state);
+      result.accuracy = accuracy;
+      result.unit     = std::max({unit,
+                                  wanted.cwiseAbs().maxCoeff(),
+                                  result.forces.cwiseAbs().maxCoeff(),
+                                  other_forces(discretization, report.residual)});
+      const double missing_energy =
+        result.missing.cwiseProduct(compliance * result.missing)
+          .cwiseAbs()
+          .sum();
+      result.is_found = result.error() <= tolerance * result.unit &&
+        (settings.energy_tolerance == 0. ||
+         result.error() <= well_known * result.unit ||
+         std::sqrt(missing_energy) <= settings.energy_tolerance);
+      return result;
     };
     const auto solve_on = [&]() {
       SolverReport next = solve_once(accuracy);
@@ -325,26 +361,18 @@ namespace Friction
       report     = std::move(next);
     };
 
-    // The energy that has been asked for is that of the difference of two
-    // solutions: the force that is missing times the way that it needs.
-    const auto is_found = [&](const Sample &s) {
-      return s.error() <= tolerance * s.unit &&
-        (settings.energy_tolerance == 0. ||
-         std::sqrt(std::abs(s.missing.dot(compliance * s.missing))) <=
-           settings.energy_tolerance);
-    };
-
     // As long as much is missing, it need not be known exactly: a rough
-    // solution will do, and is iterated on where it says too little.
+    // solution will do, and is iterated on where it says too little. What is
+    // found is found by a solution that is not rough.
     const auto set_accuracy_for = [&](const Sample &s) {
-      accuracy = is_found(s) || n_poor > 1
+      accuracy = !may_be_rough || s.is_found || n_poor > 1
         ? 0.
         : std::min(rough, rough_share * s.error() / s.unit);
     };
     const auto reliable_sample = [&]() {
       Sample result = sample();
       while (report.converged && accuracy > 0. &&
-             (is_found(result) || result.error() <= accuracy * result.unit))
+             (result.is_found || result.error() <= accuracy * result.unit))
         {
           set_accuracy_for(result);
           solve_on();
@@ -391,9 +419,8 @@ namespace Friction
     double       damping        = 1.;
     unsigned int n_retreats     = 0;
     bool         by_differences = false;
-    if (n == 1)
-      bracket.add(best.positions[0], best.missing[0]);
-    while (!is_found(best))
+    bracket.add(best);
+    while (!best.is_found)
       {
         Eigen::VectorXd step = damping * compliance * best.missing;
         if (n == 1)
@@ -407,14 +434,14 @@ namespace Friction
           give_up(best);
 
         // The guess: what the last change of positions has changed, as far as
-        // this one goes the same way. On a mesh for the first time only the
-        // platen is moved.
+        // this one goes the same way and not much farther. On a mesh for the
+        // first time only the platen is moved.
         Sample                guess  = best;
         const Eigen::VectorXd change = best.positions - other.positions;
-        const double          length = change.squaredNorm();
-        if (length > 0.)
+        const double          factor = step.dot(change) / change.squaredNorm();
+        if (std::abs(factor) <= growth)
           for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-            guess.displacement.local_element(i) += step.dot(change) / length *
+            guess.displacement.local_element(i) += factor *
               (best.displacement.local_element(i) -
                other.displacement.local_element(i));
         set_accuracy_for(best);
@@ -429,7 +456,9 @@ namespace Friction
           }
         n_retreats           = 0;
         n_poor               = now.error() < .5 * best.error() ? 0 : n_poor + 1;
-        const bool is_better = now.error() < .9 * best.error();
+        const bool is_better = now.is_found || now.error() < .9 * best.error();
+        if (n_poor > 1)
+          bracket.forget_rough_ends();
 
         // The best one may be worse than it was believed to be. Then nothing of
         // what has been tried is sure.
@@ -439,14 +468,11 @@ namespace Friction
             best     = solve_at(best.positions, best);
             if (!report.converged)
               return report;
-            other   = best;
-            bracket = Bracket();
-            if (n == 1)
-              bracket.add(best.positions[0], best.missing[0]);
+            other = best;
+            bracket.add(best);
             continue;
           }
-        if (n == 1)
-          bracket.add(now.positions[0], now.missing[0]);
+        bracket.add(now);
         if (is_better || !by_differences)
           learn(best, now);
         if (is_better)

@@ -61,10 +61,12 @@ namespace Friction
      * @param u      displacement: what solve_once solves for, and, on call, its
      *               initial guess.
      * @param state  the same of the contact nodes.
-     * @param settings  of what solve_once solves with. Forces are found up to
-     *               the tolerance of the certificate, relative to the largest
-     *               force on the body that there has been, and, if it has been
-     *               asked for, to the energy of the error.
+     * @param settings  of what solve_once solves with. Forces are found when
+     *               they are those of the scene up to the tolerance of the
+     *               certificate, relative to the largest force on the body that
+     *               there has been; if energy_tolerance is set, also the
+     *               displacement that is missing must have no larger energy
+     *               norm, or forces must be right to a millionth.
      * @param solve_once  solves with the displacements that are prescribed now,
      *                    from the guess that @p u and @p state are, up to
      *                    relative increments of its argument; zero: as well as
@@ -108,6 +110,9 @@ namespace Friction
 
       /// The largest force on the body, of this one and of solutions before.
       double unit;
+
+      /// Whether the forces are those that the scene asks for.
+      bool is_found;
 
       double
       error() const

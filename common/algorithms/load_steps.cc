@@ -23,14 +23,16 @@ namespace Friction
     discretization.set_up();
     discretization.set_slip_origin(old_displacement);
 
-    const bool   can_go_on = last_displacement.size() > 0;
-    const double factor    = can_go_on
-         ? growth(old_prescribed,
+    const bool can_go_on = last_displacement.size() > 0;
+    if (can_go_on)
+      AssertDimension(last_displacement.size(), old_displacement.size());
+    const double factor = can_go_on
+      ? growth(old_prescribed,
                discretization.constraints().prescribed_values(),
                (scene.time(step + 1) - scene.time(step)) /
                  (scene.time(step) - scene.time(step - 1)),
                discretization.constraints().communicator())
-         : 0.;
+      : 0.;
     const auto   go_on =
       [&](VectorType &v, const VectorType &now, VectorType &last) {
         v = discretization.vector();

@@ -130,9 +130,11 @@ namespace Friction
   bool
   NestedIteration<dim>::needs_estimate() const
   {
-    return !is_last() &&
-      (the_parameters.refinement.strategy == RefinementStrategy::adaptive ||
-       the_parameters.solver.stop_at_discretization);
+    const bool stops = the_parameters.solver.stop_at_discretization;
+    if (is_last())
+      return stops && the_scene.load_step() + 1 < the_scene.n_load_steps();
+    return stops ||
+      the_parameters.refinement.strategy == RefinementStrategy::adaptive;
   }
 
 
@@ -238,12 +240,10 @@ namespace Friction
   bool
   NestedIteration<dim>::advance()
   {
-    if (is_last())
-      return false;
     const ErrorEstimate estimated =
       needs_estimate() ? estimate() : ErrorEstimate();
     learn(estimated);
-    if (!mark(estimated))
+    if (is_last() || !mark(estimated))
       return false;
     refine();
     return true;

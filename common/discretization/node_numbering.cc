@@ -8,19 +8,59 @@ namespace Friction
 {
   namespace
   {
-    // Cells given by their nodes, in compressed storage with a fixed number of
-    // nodes per cell.
-    using CellNodes = std::vector<unsigned int>;
+    // Which nodes have a cell in common. Cells are given by their nodes, one
+    // cell after the other, each with the same number of them.
+    class Neighbours
+    {
+    public:
+      Neighbours(const unsigned int               n_nodes,
+                 const std::vector<unsigned int> &cell_nodes,
+                 const unsigned int               nodes_per_cell)
+        : cell_nodes(cell_nodes)
+        , nodes_per_cell(nodes_per_cell)
+        , cells_start(n_nodes + 1, 0)
+        , cells(cell_nodes.size())
+      {
+        for (const unsigned int node : cell_nodes)
+          ++cells_start[node + 1];
+        for (unsigned int i = 0; i < n_nodes; ++i)
+          cells_start[i + 1] += cells_start[i];
+        std::vector<unsigned int> fill(cells_start.begin(),
+                                       cells_start.end() - 1);
+        for (std::size_t i = 0; i < cell_nodes.size(); ++i)
+          cells[fill[cell_nodes[i]]++] = i / nodes_per_cell;
+      }
+
+      unsigned int
+      n_nodes() const
+      {
+        return cells_start.size() - 1;
+      }
+
+      // Calls f for each neighbour of a node, some of them several times.
+      template <typename Function>
+      void
+      for_each(const unsigned int node, const Function &f) const
+      {
+        for (unsigned int c = cells_start[node]; c < cells_start[node + 1]; ++c)
+          for (unsigned int v = 0; v < nodes_per_cell; ++v)
+            f(cell_nodes[cells[c] * nodes_per_cell + v]);
+      }
+
+    private:
+      const std::vector<unsigned int> &cell_nodes;
+      const unsigned int               nodes_per_cell;
+
+      // The cells around each node, in compressed storage.
+      std::vector<unsigned int> cells_start, cells;
+    };
 
 
 
     // Appends the nodes that can be reached from start nodes, level by level.
     void
     breadth_first_search(const std::vector<unsigned int> &start,
-                         const CellNodes                 &cell_nodes,
-                         const unsigned int               nodes_per_cell,
-                         const std::vector<unsigned int> &cells_start,
-                         const std::vector<unsigned int> &cells,
+                         const Neighbours                &neighbours,
                          std::vector<char>               &visited,
                          std::vector<unsigned int>       &order)
     {
@@ -31,19 +71,13 @@ namespace Friction
           visited[node] = 1;
         }
       for (; next < order.size(); ++next)
-        for (unsigned int c = cells_start[order[next]];
-             c < cells_start[order[next] + 1];
-             ++c)
-          for (unsigned int v = 0; v < nodes_per_cell; ++v)
+        neighbours.for_each(order[next], [&](const unsigned int node) {
+          if (!visited[node])
             {
-              const unsigned int node =
-                cell_nodes[cells[c] * nodes_per_cell + v];
-              if (!visited[node])
-                {
-                  visited[node] = 1;
-                  order.push_back(node);
-                }
+              visited[node] = 1;
+              order.push_back(node);
             }
+        });
     }
 
 
@@ -51,56 +85,25 @@ namespace Friction
     // From the start nodes, if there are any; all that cannot be reached from
     // there gets a start at its rim.
     std::vector<unsigned int>
-    cuthill_mckee(const unsigned int               n_nodes,
-                  const CellNodes                 &cell_nodes,
-                  const unsigned int               nodes_per_cell,
+    cuthill_mckee(const Neighbours                &neighbours,
                   const std::vector<unsigned int> &start_nodes)
     {
-      // The cells around each node.
-      std::vector<unsigned int> cells_start(n_nodes + 1, 0);
-      for (const unsigned int node : cell_nodes)
-        ++cells_start[node + 1];
-      for (unsigned int i = 0; i < n_nodes; ++i)
-        cells_start[i + 1] += cells_start[i];
-      std::vector<unsigned int> cells(cell_nodes.size());
-      std::vector<unsigned int> fill(cells_start.begin(),
-                                     cells_start.end() - 1);
-      for (std::size_t i = 0; i < cell_nodes.size(); ++i)
-        cells[fill[cell_nodes[i]]++] = i / nodes_per_cell;
-
+      const unsigned int        n_nodes = neighbours.n_nodes();
       std::vector<unsigned int> order;
       std::vector<char>         visited(n_nodes, 0);
       order.reserve(n_nodes);
-      breadth_first_search(start_nodes,
-                           cell_nodes,
-                           nodes_per_cell,
-                           cells_start,
-                           cells,
-                           visited,
-                           order);
+      breadth_first_search(start_nodes, neighbours, visited, order);
       for (unsigned int i = 0; i < n_nodes; ++i)
         if (!visited[i])
           {
             // The node farthest from any node lies at the rim; start there.
             const std::size_t begin = order.size();
-            breadth_first_search({i},
-                                 cell_nodes,
-                                 nodes_per_cell,
-                                 cells_start,
-                                 cells,
-                                 visited,
-                                 order);
+            breadth_first_search({i}, neighbours, visited, order);
             const unsigned int far = order.back();
             for (std::size_t k = begin; k < order.size(); ++k)
               visited[order[k]] = 0;
             order.resize(begin);
-            breadth_first_search({far},
-                                 cell_nodes,
-                                 nodes_per_cell,
-                                 cells_start,
-                                 cells,
-                                 visited,
-                                 order);
+            breadth_first_search({far}, neighbours, visited, order);
           }
       return order;
     }
@@ -117,10 +120,10 @@ namespace Friction
       // Cells with nodes of other processes repeat their first owned node in
       // place of the others. Their owned nodes are those at an interface to
       // other processes, and come first.
-      const unsigned int nodes_per_cell = 1u << dim;
-      const unsigned int n_nodes        = owned.n_elements() / dim;
-      CellNodes          kept;
-      std::vector<char>  at_interface(n_nodes, 0);
+      const unsigned int        nodes_per_cell = 1u << dim;
+      const unsigned int        n_nodes        = owned.n_elements() / dim;
+      std::vector<unsigned int> kept;
+      std::vector<char>         at_interface(n_nodes, 0);
       for (std::size_t c = 0; c < vertex_dofs.size(); c += nodes_per_cell)
         {
           unsigned int some_owned = numbers::invalid_unsigned_int;
@@ -149,7 +152,7 @@ namespace Friction
         if (at_interface[i])
           interface.push_back(i);
       const std::vector<unsigned int> order =
-        cuthill_mckee(n_nodes, kept, nodes_per_cell, interface);
+        cuthill_mckee(Neighbours(n_nodes, kept, nodes_per_cell), interface);
       std::vector<types::global_dof_index> numbers(owned.n_elements());
       for (unsigned int i = 0; i < n_nodes; ++i)
         for (unsigned int d = 0; d < dim; ++d)

@@ -166,20 +166,21 @@ namespace Friction
 
 
 
-      // Adds up n blocks times values, from this one on, forwards or backwards
-      // by steps of 1 or -1. Two sums, so that an addition need not wait for
-      // the one before it.
-      template <int dim, typename Four>
+      // Adds up n blocks times values, from the first one on, forwards or
+      // backwards by steps of 1 or -1. Two sums, so that an addition need not
+      // wait for the one before it.
+      template <int step, int dim, typename Four>
       inline DEAL_II_ALWAYS_INLINE void
-      add_blocks(Sum<dim, Four>      &sum,
-                 const unsigned int  *column,
-                 const double        *block,
-                 std::size_t          n,
-                 const std::ptrdiff_t step,
-                 const double        *x)
+      add_blocks(Sum<dim, Four>       &sum,
+                 const BlockRows<dim> &A,
+                 const std::size_t     first,
+                 std::size_t           n,
+                 const double         *x)
       {
-        constexpr int  size = dim * dim;
-        Sum<dim, Four> other;
+        constexpr int       size   = dim * dim;
+        const unsigned int *column = A.columns + first;
+        const double       *block  = A.blocks + size * first;
+        Sum<dim, Four>      other;
         for (; n > 1; n -= 2)
           {
             sum.add(block, x + dim * static_cast<std::size_t>(column[0]));
@@ -204,12 +205,7 @@ namespace Friction
       {
         const std::size_t begin = A.starts[row], end = A.starts[row + 1];
         Sum<dim, Four>    sum;
-        add_blocks<dim, Four>(sum,
-                              A.columns + begin,
-                              A.blocks + dim * dim * begin,
-                              end - begin,
-                              1,
-                              x);
+        add_blocks<1>(sum, A, begin, end - begin, x);
         for (int d = 0; d < dim; ++d)
           product[d] = sum[d];
       }
@@ -280,12 +276,7 @@ namespace Friction
             const std::size_t first    = backwards ? end - 1 : begin + 1,
                               last     = backwards ? begin + 1 : end - 1;
             Sum<dim, Four> sum;
-            add_blocks<dim, Four>(sum,
-                                  A.columns + first,
-                                  A.blocks + size * first,
-                                  n_others - has_last,
-                                  step,
-                                  x);
+            add_blocks<step>(sum, A, first, n_others - has_last, x);
             sum.add(A.blocks + size * begin, xi);
 
             if constexpr (dim == 2)

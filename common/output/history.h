@@ -54,7 +54,8 @@ namespace Friction
     /// The functional at the solution.
     double energy = 0.;
 
-    /// Energy norm of the error of the iteration, extrapolated.
+    /// Energy norm of the error of the iteration, extrapolated; without that
+    /// of what is missing of given forces.
     double algebraic_error = 0.;
 
     /// Sum of the nodal normal forces, positive in compression.

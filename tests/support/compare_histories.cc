@@ -2,8 +2,8 @@
 // more processes: the same levels, the same numbers of cells, unknowns, and
 // nodes in contact and sticking, energies to ten digits, and at most two cycles
 // more per level (with Algorithm 2 per outer iteration, with given forces per
-// position of their platens: each of these is a solution of its own). On meshes
-// with fewer than 300 unknowns per process, where next to all nodes are at an
+// solution for them, but no more than half as many together). On meshes with
+// fewer than 300 unknowns per process, where next to all nodes are at an
 // interface, it may be half as many more.
 //
 // Usage: compare_histories HISTORY HISTORY PROCESSES
@@ -55,8 +55,8 @@ main(int argc, char **argv)
              outer = column(a, "outer_iterations"), dofs = column(a, "dofs");
   const double n = std::stod(argv[3]);
   for (unsigned int i = 0; i < x.size(); ++i)
-    if (y[i] >
-        x[i] + (dofs[i] < 300 * n ? std::max(2., x[i] / 2) : 2.) * outer[i])
+    if (const double half = std::max(2., x[i] / 2); y[i] >
+        x[i] + (dofs[i] < 300 * n ? half : std::min(2. * outer[i], half)))
       {
         std::cout << "FAILED: " << y[i] << " cycles instead of " << x[i]
                   << " on level " << i << std::endl;

@@ -3,7 +3,7 @@
 # whatever the number of processes, and the output directory must hold complete
 # files. Numbers of cycles are only compared with a bound, and rates not at all:
 # they depend on the order of nodes and on rounding; so does the number of solutions
-# where forces are given, which together may take three times as many, or four times on
+# where forces are given, which together may take twice as many, or four times on
 # the first mesh, where nothing is known. The numbers in history.h5 of
 # several processes are compared with those that one process has left in
 # RESULTS-1, energies to ten digits. A program that shares no code with the one that
@@ -46,7 +46,7 @@ awk -v bound="$cycles" '
   NF == 9 && $1 ~ /^[0-9]+$/ {
     one = $6 == 1
     print $1, $2, $3, $4, $5, (one ? 1 : "several"),
-      ($7 <= (one ? 1 : $1 == 0 ? 4 : 3) * bound ? "few" : $7), $9
+      ($7 <= (one ? 1 : $1 == 0 ? 4 : 2) * bound ? "few" : $7), $9
     next
   }
   /^Peak pressure/ {next}

@@ -28,7 +28,7 @@ def verify_level(level, reported, scene, tolerance, before=None):
     check_reported_numbers(verdict, found, reported, tolerance)
     check_reported_nodes(verdict, found, reported, tolerance)
     check_reported_forces(verdict, found, reported, tolerance)
-    unknown = check_given_forces(verdict, found, reported, scene, tolerance, before)
+    unknown = check_given_forces(verdict, found, reported, scene, tolerance)
     return verdict, unknown + compare_with_scene(verdict, level, scene, found.hanging,
                                                  exact)
 
@@ -324,7 +324,7 @@ def reactions_at_nodes(found):
     return reactions
 
 
-def check_given_forces(verdict, found, reported, scene, tolerance, before):
+def check_given_forces(verdict, found, reported, scene, tolerance):
     """What holds a platen exerts the force that the scene gives, up to a part of the
     largest force on the body that there has been, and is where it is said to be.
     Returns entries that are beyond this program."""
@@ -333,8 +333,7 @@ def check_given_forces(verdict, found, reported, scene, tolerance, before):
     platens = dict(scene.conditions("Boundary conditions/Force"))
     unit = max(found.pressing.sum(), np.abs(nodal_loads(
         level, level.body_force, level.traction_faces, level.tractions)).sum())
-    if before is not None:
-        unit = max(unit, before.largest_force)
+    unit = max([unit, *reported["normal_forces_before"]])
     try:
         for key, components in scene.conditions("Boundary conditions/Displacement"):
             if not platens:
@@ -353,7 +352,7 @@ def check_given_forces(verdict, found, reported, scene, tolerance, before):
                 wanted = scene.vector_field(["0" if c == "free" else c for c in given],
                                             np.zeros((1, level.dim)))[0][d]
                 force = reactions[own[:, d], d].sum()
-                unit = level.largest_force = max(unit, abs(wanted), abs(force))
+                unit = max(unit, abs(wanted), abs(force))
                 verdict.check(None, abs(force - wanted) / (unit or 1.), tolerance,
                               f"the force on boundary {key} is not that of "
                               "'Boundary conditions/Force'")

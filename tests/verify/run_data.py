@@ -44,8 +44,6 @@ class Level:
                 # With several load steps.
                 self.load_step = int(file.attrs.get("load_step", 1))
                 self.time = file.attrs.get("time")
-                # On the body, up to this level: found out by the checks.
-                self.largest_force = 0.
                 data = {name: item[()] for name, item in file.items()}
             self._take(data)
         except (OSError, KeyError, ValueError, IndexError) as error:
@@ -168,7 +166,8 @@ def read_history(directory):
             columns = {name: item[()] for name, item in file["levels"].items()}
             levels = [{name: column[i] for name, column in columns.items()}
                       for i in range(len(columns["level"]))]
-            for row in levels:
+            for i, row in enumerate(levels):
+                row["normal_forces_before"] = columns["normal_force"][:i]
                 group = file.get(f"contact/level_{row['level']:02d}")
                 if group is not None:
                     row["contact"] = {name: item[()] for name, item in group.items()}
