@@ -277,7 +277,8 @@ namespace
           }
     check_everywhere(converged && was_rough && !is_rough,
                      "what is returned is not a rough solution");
-    check_everywhere(most_missing <= 1.0001, "it has the force");
+    // The unit is the sum of all nodal forces, which are not quite parallel.
+    check_everywhere(most_missing <= 1.1, "it has the force");
     check_everywhere(most_energy < 2.,
                      "and little energy is missing if this has been asked for");
   }
