@@ -51,7 +51,7 @@ namespace Friction
 
 
   template <int dim>
-  std::size_t
+  void
   AlgebraicCorrection<dim>::update(const Linearization<dim> &linearization,
                                    const Iterate &)
   {
@@ -64,10 +64,9 @@ namespace Friction
       for (const unsigned int node : one->changed_nodes())
         changed = changed || !current.agrees(truncation, node);
     if (!true_on_any_process(changed, problem.communicator()))
-      return 0;
+      return;
     current = truncation;
     fill();
-    return problem.stiffness.blocks().n_rows();
   }
 
 

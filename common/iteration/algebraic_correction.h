@@ -28,8 +28,8 @@ namespace Friction
                         const CoarsestMethod        method);
     AlgebraicCorrection(DiscreteProblem<dim> &&, const CoarsestMethod) = delete;
 
-    std::size_t update(const Linearization<dim> &linearization,
-                       const Iterate            &x) override;
+    void update(const Linearization<dim> &linearization,
+                const Iterate            &x) override;
 
     void apply(VectorType &v, const VectorType &r) override;
 

@@ -25,10 +25,9 @@ namespace Friction
     virtual ~Correction() = default;
 
     /** Follows the phases, and what else the correction wants to know of the
-     * iterate @p x that has been linearised. Returns the number of block rows
-     * of matrices that this process has computed anew. Collective. */
-    virtual std::size_t update(const Linearization<dim> &linearization,
-                               const Iterate            &x) = 0;
+     * iterate @p x that has been linearised. Collective. */
+    virtual void update(const Linearization<dim> &linearization,
+                        const Iterate            &x) = 0;
 
     /**
      * Computes a correction. Collective.

@@ -34,14 +34,14 @@ namespace Friction
 
 
   template <int dim>
-  std::size_t
+  void
   MonotoneCorrection<dim>::update(const Linearization<dim> &linearization,
                                   const Iterate            &x)
   {
     leaf_lower.reinit(x.u, true);
     leaf_upper.reinit(x.u, true);
     linearization.bounds(leaf_lower, leaf_upper, x);
-    return Base::update(linearization, x);
+    Base::update(linearization, x);
   }
 
 

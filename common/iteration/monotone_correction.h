@@ -27,8 +27,8 @@ namespace Friction
                        const Cycle        cycle,
                        const unsigned int smoothing_steps);
 
-    std::size_t update(const Linearization<dim> &linearization,
-                       const Iterate            &x) override;
+    void update(const Linearization<dim> &linearization,
+                const Iterate            &x) override;
 
     /** Sets the bounds of the correction at the leaf nodes, by component,
      * instead of taking them from a linearisation. Zero must be admissible;

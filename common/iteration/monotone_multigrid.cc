@@ -71,7 +71,7 @@ namespace Friction
   MonotoneMultigrid<dim>::iterate(Iterate &x)
   {
     linearization->update(x);
-    updated_rows += correction->update(*linearization, x);
+    correction->update(*linearization, x);
     linearization->linearize_residual(r, x);
     correction->apply(v, r);
     step_control->improve(v, x, r, linearization->truncation());

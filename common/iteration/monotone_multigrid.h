@@ -93,14 +93,6 @@ namespace Friction
       return r;
     }
 
-    /** Block rows of matrices that this process has computed anew, in all
-     * steps. */
-    std::size_t
-    n_updated_rows() const
-    {
-      return updated_rows;
-    }
-
     std::size_t memory_consumption() const;
 
   private:
@@ -111,8 +103,7 @@ namespace Friction
     StepControl<dim>            *step_control;
     unsigned int                 smoothing_steps;
 
-    VectorType  r, v;
-    std::size_t updated_rows = 0;
+    VectorType r, v;
   };
 } // namespace Friction
 

@@ -53,11 +53,11 @@ namespace Friction
 
 
   template <int dim>
-  std::size_t
+  void
   TruncatedCorrection<dim>::update(const Linearization<dim> &linearization,
                                    const Iterate &)
   {
-    return levels.update(linearization.truncation());
+    levels.update(linearization.truncation());
   }
 
 

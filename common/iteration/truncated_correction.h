@@ -45,8 +45,8 @@ namespace Friction
       : TruncatedCorrection(levels, cycle, smoothing_steps, true)
     {}
 
-    std::size_t update(const Linearization<dim> &linearization,
-                       const Iterate            &x) override;
+    void update(const Linearization<dim> &linearization,
+                const Iterate            &x) override;
 
     void apply(VectorType &v, const VectorType &r) override;
 

@@ -74,7 +74,7 @@ namespace Friction
 
 
   template <int dim>
-  std::size_t
+  void
   Levels<dim>::update(const Truncation<dim> &truncation)
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
@@ -82,7 +82,7 @@ namespace Friction
     // Rows of other processes have no part in the lines of this one.
     if (n_rows > 0)
       ++version;
-    return n_rows;
+    updated_rows += n_rows;
   }
 
 

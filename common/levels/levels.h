@@ -99,7 +99,15 @@ namespace Friction
 
     /** Has the matrices follow a change of phases; see
      * LevelMatrices::update(). */
-    std::size_t update(const Truncation<dim> &truncation);
+    void update(const Truncation<dim> &truncation);
+
+    /** Block rows of matrices that this process has computed anew in all
+     * updates: a measure of their work. */
+    std::size_t
+    n_updated_rows() const
+    {
+      return updated_rows;
+    }
 
     /**
      * Gauss-Seidel sweeps for B_k c = b at the nodes of a level that are to be
@@ -168,8 +176,9 @@ namespace Friction
     // level matrices change.
     std::vector<LineRelaxation<dim>> lines;
     LineRelaxation<dim>              leaf_lines;
-    unsigned int                     version = 1; // of the matrices
-    std::vector<unsigned int>        factorised;  // which; none if zero
+    unsigned int                     version      = 1; // of the matrices
+    std::size_t                      updated_rows = 0;
+    std::vector<unsigned int>        factorised; // which; none if zero
 
     bool needs_factorisation(const unsigned int k);
 

@@ -343,11 +343,11 @@ namespace
         if (law == FrictionLaw::none)
           {
             first  = u;
-            rows   = solver.iteration().n_updated_rows();
+            rows   = solver.levels().n_updated_rows();
             memory = result.solver_memory;
           }
         same_work = same_work && same_bits(u, first) &&
-          rows == solver.iteration().n_updated_rows() &&
+          rows == solver.levels().n_updated_rows() &&
           memory == result.solver_memory;
       }
     check(normal_only, "truncated components: the normal ones, nothing else");
