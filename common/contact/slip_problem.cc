@@ -47,8 +47,7 @@ namespace Friction
     //   k t + d t/sqrt(1+t^2) = r,   k, d, r >= 0,
     //
     // to rounding of k, d, r and of r-d, which may be known better than as a
-    // difference. Where t > 1, the equation is multiplied by c = 1/t: then it
-    // is
+    // difference. Where t > 1, the equation times c = 1/t is
     //
     //   (r-d) c + d (c - c/sqrt(1+c^2)) = k,
     //

@@ -547,10 +547,10 @@ namespace Friction
 
 
 
-    // $\operatorname{div}\sigma=\mu\Delta
-    // u+(\lambda+\mu)\nabla\operatorname{div}u$. Bilinear functions have mixed
-    // second derivatives, so this is not zero. The pressure has a gradient in
-    // a cell only if it is that of a pointwise volumetric strain.
+    // The divergence of the stress,
+    // $\mu\Delta u+(\lambda+\mu)\nabla\operatorname{div}u$. Bilinear functions
+    // have mixed second derivatives, so this is not zero. The pressure has a
+    // gradient in a cell only if it is that of a pointwise volumetric strain.
     //
     // With unit coordinates $\xi_a$ and $u_{,ab}$ the derivatives with respect
     // to them the second derivatives of u are the sums over a and b of

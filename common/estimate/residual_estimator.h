@@ -129,8 +129,8 @@ namespace Friction
    * @f{align*}{
    *   \eta_K^2 = \frac1{2\mu}\Big(
    *      & h_K^2\,\|f+\operatorname{div}\sigma_h\|_K^2
-   *        + \tfrac12\sum_{e\subset\partial
-   * K\cap\Omega}h_e\,\|[\sigma_hn]\|_e^2
+   *        + \tfrac12\sum_{e\subset\partial K\cap\Omega}
+   *          h_e\,\|[\sigma_hn]\|_e^2
    *        + \sum_{e\subset\Gamma_N}h_e\,\|t-\sigma_hn\|_e^2
    *        + \sum_{e\subset\Gamma_S}h_e\,\|t_h-\sigma_hn\|_e^2 \Big) \\
    *      & + \sum_{e\subset\Gamma_S}\int_e p_h\,(g-u_{h,n})_+

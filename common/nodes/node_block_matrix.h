@@ -14,10 +14,10 @@ namespace Friction
   /**
    * Which blocks a matrix has, in compressed row storage. The columns of row i
    * are in the order i, i+1, ..., and from the last one on to 0, 1, ..., i-1:
-   * the diagonal comes first. Going through the rows in ascending order, each
-   * from front to back, one meets last the columns of those rows that one has
-   * just been to; in descending order, each from back to front, as well (but
-   * for the diagonal).
+   * the diagonal comes first. A loop over the rows in ascending order, each
+   * from front to back, meets last the columns of those rows that it has just
+   * been to; in descending order, each from back to front, as well (but for the
+   * diagonal).
    */
   struct NodePattern
   {

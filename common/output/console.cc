@@ -71,8 +71,8 @@ namespace Friction
     using Seconds               = std::chrono::duration<double>;
     if (Seconds(now - level_start).count() < 2.)
       return;
-    // A terminal shows the present state. A file that somebody follows gets a
-    // line every few seconds, of a long run fewer, so that it stays short.
+    // A terminal shows the present state. A file that is read as it grows gets
+    // a line every few seconds, of a long run fewer, so that it stays short.
     const double elapsed = Seconds(now - start).count();
     if (Seconds(now - last_progress).count() <
         (terminal ? 0.2 : std::max(5., .1 * elapsed)))

@@ -12,10 +12,9 @@ namespace Friction
   /**
    * As long as an object of this class exists, its run is the only one that
    * writes into a directory. What other runs ask is the operating system, which
-   * forgets about the lock of a process that has ended, in whatever way: the
-   * file
-   * `.lock` of a run that was killed keeps nobody out. The file says who has
-   * it, for the sentence that another run then ends with.
+   * forgets about the lock of a process that has ended, in whatever way: a run
+   * that was killed keeps no other out by its file `.lock`. The file says which
+   * run has it, for the sentence that another run then ends with.
    */
   class DirectoryLock
   {

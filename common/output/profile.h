@@ -15,9 +15,8 @@ namespace Friction
    * of them, and the seconds of the whole solution, with those spent on waiting
    * for other processes. Then memory, in bytes per degree of freedom: that of
    * the leaf matrix, of the smoother with the level matrices, and of all
-   * processes together
-   * when they had most, which is during assembly. A collective operation; the
-   * text is that of all processes.
+   * processes together when they had most, which is during assembly. A
+   * collective operation; the text is that of all processes.
    *
    * @param with_times  otherwise nothing that depends on clock and machine.
    */

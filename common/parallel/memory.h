@@ -18,7 +18,7 @@ namespace Friction
   /**
    * What a group of processes, as those of a container or of a job, may still
    * take of its limit, in bytes; infinite if it has none, or if that is not
-   * known. Files that have been read stay in memory as long as nobody else
+   * known. Files that have been read stay in memory as long as no program
    * wants it, and count as used by the group: those that have not been used
    * lately do not here. Where the system does not say how many these are, what
    * is used is not known either, and the limit is all that counts.

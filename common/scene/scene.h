@@ -303,7 +303,7 @@ namespace Friction
     const ContactCondition<dim> *contact_on(const types::boundary_id id) const;
 
     /**
-     * What should be said before anybody believes a solution, or nothing: that
+     * What a user should know before believing a solution, or nothing: that
      * there is an obstacle but no boundary that may touch it, or the other way
      * round, or that the coefficient of friction is above Eck's bound.
      *

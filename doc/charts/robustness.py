@@ -35,7 +35,7 @@ def read(path):
 
 
 def profile(problems, solver):
-    """Sorted ratios to the fastest; problems that nobody solves count as unsolved."""
+    """Sorted ratios to the fastest; problems that no solver solves count as unsolved."""
     ratios = []
     for of_solver in problems.values():
         fastest = min(of_solver.values())

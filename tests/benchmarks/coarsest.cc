@@ -40,15 +40,13 @@ namespace Benchmark
     nest.begin();
     const double               setup = timer.wall_time();
     const Discretization<dim> &d     = nest.discretization();
-    const LevelHierarchy<dim>  hierarchy(d.dof_handler(),
-                                        d.constraints(),
-                                        d.stiffness().blocks());
-    const LevelMatrices<dim>   matrices(d.stiffness().blocks(),
-                                      hierarchy,
-                                      d.constraints());
-    VectorType                 c(d.dof_handler().locally_owned_dofs(),
+    const LevelHierarchy<dim>  hierarchy(
+      d.dof_handler(), d.constraints(), d.stiffness().blocks());
+    const LevelMatrices<dim> matrices(
+      d.stiffness().blocks(), hierarchy, d.constraints());
+    VectorType c(d.dof_handler().locally_owned_dofs(),
                  Compatibility::mpi_communicator(d.dof_handler()));
-    VectorType                 rhs(c);
+    VectorType rhs(c);
     for (unsigned int i = 0; i < rhs.locally_owned_size(); ++i)
       rhs.local_element(i) = d.constraints().is_prescribed(i / dim, i % dim)
         ? 0.

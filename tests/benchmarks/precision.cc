@@ -20,11 +20,11 @@
 //
 // All errors are relative:
 // - energy: that of the difference over that of the reference solution;
-// - pressure: h^{1/2}(p_h-p) in the lumped L2 norm of the contact boundary,
-// over
-//   a^{1/2} p in the same norm. Here h is the local size of the faces of the
-//   level's own mesh, and a the contact half-width of the reference, so that a
-//   number without unit results that does not depend on the choice of units;
+// - pressure: h^{1/2}(p_h-p) in the lumped L2 norm of the contact boundary, as
+//   a part of a^{1/2} p in the same norm. Here h is the local size of the faces
+//   of the level's own mesh, and a the contact half-width of the reference, so
+//   that a number without unit results that does not depend on the choice of
+//   units;
 // - half-widths: over those of the reference. They are those that the programs
 //   write to their history, sums of nodal measures, and so multiples of about
 //   half a face.

@@ -28,9 +28,8 @@
 // --limit    seconds after which any solver is stopped, and has failed.
 // --guess    interpolated (that of the nested iteration), or another one on the
 //            first mesh: zero, random, inside, lifted; see guesses.h.
-// --inclusion  multiplies Young's modulus in a part of the body: at the middle
-// of
-//            its lower side, half as wide and a quarter as high as the body.
+// --inclusion  multiplies Young's modulus in a part of the body: it lies at the
+//            middle of the lower side, half as wide and a quarter as high.
 
 #include <deal.II/base/timer.h>
 #include <deal.II/base/utilities.h>
@@ -187,8 +186,7 @@ namespace Benchmark
     SolverReport report;
     try
       {
-        report =
-          nest.solve_with(nest.parameters().solver, u, state, progress);
+        report = nest.solve_with(nest.parameters().solver, u, state, progress);
         if (!report.attempts.empty())
           std::cerr << "  level " << nest.level() << ": "
                     << describe_attempts(report) << std::endl;

@@ -1,5 +1,5 @@
 // A directory has one run at a time: the second one says who has it, a lock
-// that was left by another run keeps nobody out, and without locks there is a
+// that was left by another run keeps no run out, and without locks there is a
 // warning.
 
 #include <common/input_error.h>

@@ -113,7 +113,7 @@ main()
               << p.expressions.expand("s") << std::endl;
   }
 
-  // The sweeps that nobody asked for.
+  // The sweeps that no entry asks for.
   for (const std::string nu : {"0", "0.3", "0.45", "0.49", "0.4999"})
     {
       const SolverSettings automatic =

@@ -175,7 +175,7 @@ bad 'an option that does not exist, after the scene' \
   "'--restrat' is no option" "$block" --restrat
 bad 'an option that stands alone' "'--help' has to be" "$block" --help
 
-# Permissions do not stop root, but nobody can create a folder below a file.
+# Permissions do not stop root, but not even root can create a folder below a file.
 echo 'a file' >file
 "$program" "$block" Output/Directory=file/results >stdout 2>stderr
 status=$?

@@ -36,7 +36,7 @@ class Workshop:
 
     programs: the step programs, by dimension. runs: a folder for what they
     write. output: where pictures go. quick: whether tiny meshes will do, as in a
-    test, where nobody looks at the picture.
+    test, where the picture is not looked at.
     """
 
     def __init__(self, programs, runs, output, quick=False):
