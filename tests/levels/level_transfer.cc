@@ -52,7 +52,7 @@ namespace
     const auto       mesh = make_triangulation<dim>();
     scene.make_coarse_mesh(*mesh);
     mesh->refine_global(1);
-    for (unsigned int i = 0; i < 4 - dim / 2; ++i)
+    for (unsigned int i = 0; i < 5 - dim; ++i)
       {
         for (const auto &cell : mesh->active_cell_iterators())
           if (cell->is_locally_owned() &&
