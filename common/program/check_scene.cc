@@ -44,13 +44,15 @@ namespace Friction
         n_nodes[i]       = Utilities::MPI::sum(n_nodes[i], communicator);
       }
     const auto n_cells = nest.mesh().n_global_active_cells();
+    // Boundary ids are gathered from all processes, so each of them asks.
+    const auto boundary_ids = nest.mesh().get_boundary_ids();
     if (Utilities::MPI::this_mpi_process(communicator) != 0)
       return;
 
     for (const std::string &warning : warnings)
       out << warning << '\n';
     std::string ids;
-    for (const auto id : nest.mesh().get_boundary_ids())
+    for (const auto id : boundary_ids)
       ids += (ids.empty() ? "" : ", ") + std::to_string(id);
     out << "Scene '" << parameters.name << "': " << nest.mesh().n_cells(0)
         << (nest.mesh().n_cells(0) == 1 ? " coarse cell" : " coarse cells")
