@@ -53,6 +53,12 @@ function(label_test name)
   if(NOT _test_LABEL STREQUAL "quick" AND _test_PROCESSES EQUAL 1)
     set_tests_properties(${name} PROPERTIES COST 100)
   endif()
+  # A test on two processes begins before all of them: it fits into the place of one
+  # that ends, and has one on one process beside it. Where it comes later, places
+  # become free one by one, and it waits for the end and then runs alone.
+  if(_test_PROCESSES EQUAL 2)
+    set_tests_properties(${name} PROPERTIES COST 200)
+  endif()
 endfunction()
 
 # The programs of all quick tests.
