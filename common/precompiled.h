@@ -2,10 +2,10 @@
 #define friction_precompiled_h
 
 // The headers of deal.II, Eigen and the standard library that many files here
-// include, and that take ten of the twelve seconds that such a file would take to
-// compile: parsed once for the library and all tests, and once more for what is
-// optimised in debug mode. Each file includes what it needs all the same, and
-// compiles without this one (-DFRICTION_PRECOMPILED_HEADERS=OFF).
+// include, and that take ten of the twelve seconds that such a file would take
+// to compile: parsed once for the library and all tests, and once more for what
+// is optimised in debug mode. Each file includes what it needs all the same,
+// and compiles without this one (-DFRICTION_PRECOMPILED_HEADERS=OFF).
 
 #include <deal.II/base/conditional_ostream.h>
 #include <deal.II/base/function_parser.h>

@@ -21,6 +21,7 @@ set_target_properties(friction PROPERTIES
   SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 
 install(TARGETS step-friction-2d step-friction-3d)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(TARGETS friction EXPORT friction-targets
   INCLUDES DESTINATION ${_headers})
 install(DIRECTORY common DESTINATION ${_headers}

@@ -147,7 +147,8 @@ namespace Friction
     touches.update_ghost_values();
 
     bool any_marked = false;
-    for (const auto &cell : discretization.dof_handler().active_cell_iterators())
+    for (const auto &cell :
+         discretization.dof_handler().active_cell_iterators())
       if (cell->is_locally_owned() && cell->at_boundary())
         for (const unsigned int v : cell->vertex_indices())
           if (touches(cell->vertex_dof_index(v, 0)) > 0.)
@@ -156,8 +157,7 @@ namespace Friction
               any_marked = true;
             }
     return Utilities::MPI::max(any_marked ? 1 : 0,
-                               discretization.constraints().communicator()) >
-      0;
+                               discretization.constraints().communicator()) > 0;
   }
 
 

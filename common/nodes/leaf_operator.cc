@@ -6,7 +6,7 @@
 namespace Friction
 {
   template <int dim>
-  LeafOperator<dim>::LeafOperator(NodeBlockMatrix<dim>        &&blocks,
+  LeafOperator<dim>::LeafOperator(NodeBlockMatrix<dim>       &&blocks,
                                   const NodalConstraints<dim> &constraints)
     : matrix(std::move(blocks))
     , partitioner(constraints.partitioner())

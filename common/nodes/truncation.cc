@@ -65,8 +65,8 @@ namespace Friction
   template <int dim>
   NodeBlock<dim>
   Truncation<dim>::truncated_block(const unsigned int i,
-                            const double      *block,
-                            const unsigned int j) const
+                                   const double      *block,
+                                   const unsigned int j) const
   {
     NodeBlock<dim> result;
     for (unsigned int e = 0; e < dim * dim; ++e)

@@ -24,9 +24,9 @@ namespace Friction
 
   /**
    * What one process meets in the middle of a collective operation of another
-   * library, an MPI file for example, cannot be agreed on, because the others wait
-   * there. Prints the sentence and ends all processes, with the exit status of
-   * bad input. With one process an InputError is thrown.
+   * library, an MPI file for example, cannot be agreed on, because the others
+   * wait there. Prints the sentence and ends all processes, with the exit
+   * status of bad input. With one process an InputError is thrown.
    */
   [[noreturn]] void throw_or_abort(const MPI_Comm     communicator,
                                    const std::string &sentence);

@@ -6,7 +6,7 @@
 namespace Friction
 {
   NodeDistribution::NodeDistribution(
-    const unsigned int                                n_owned,
+    const unsigned int                               n_owned,
     const std::shared_ptr<const SolverCommunicator> &communicator)
     : shared_comm(communicator)
     , my_rank(Utilities::MPI::this_mpi_process(communicator->get()))

@@ -29,7 +29,7 @@ namespace Friction
 
     /** Collective: each process says how many it owns. */
     NodeDistribution(
-      const unsigned int                                n_owned,
+      const unsigned int                               n_owned,
       const std::shared_ptr<const SolverCommunicator> &communicator);
 
     MPI_Comm

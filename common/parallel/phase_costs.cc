@@ -17,10 +17,8 @@ namespace Friction
     {
       static const int key = []() {
         int new_key = MPI_KEYVAL_INVALID;
-        MPI_Comm_create_keyval(MPI_COMM_NULL_COPY_FN,
-                               MPI_COMM_NULL_DELETE_FN,
-                               &new_key,
-                               nullptr);
+        MPI_Comm_create_keyval(
+          MPI_COMM_NULL_COPY_FN, MPI_COMM_NULL_DELETE_FN, &new_key, nullptr);
         return new_key;
       }();
       return key;

@@ -19,10 +19,6 @@
 
 #include <common/algorithms/nested_iteration.h>
 
-#include <common/algorithms/nested_iteration.h>
-
-#include <common/algorithms/nested_iteration.h>
-
 #include <cmath>
 #include <iostream>
 

@@ -94,7 +94,8 @@ namespace
     unsigned int n      = 0;
     const auto   points = node_points(d);
     for (unsigned int i = 0; i < points.size(); ++i)
-      n += (std::abs(points[i][2]) < tolerance && d.constraints().is_hanging(i));
+      n +=
+        (std::abs(points[i][2]) < tolerance && d.constraints().is_hanging(i));
     return n;
   }
 
@@ -134,12 +135,13 @@ namespace
     auto           mesh = make_triangulation<3>();
     make_mesh(scene, patch, *mesh);
 
-    const Discretized<3>   discretization(scene, *mesh);
+    const Discretized<3>      discretization(scene, *mesh);
     const ContactBoundary<3> &contact = discretization.contact();
     VectorType                u       = admissible_start(discretization);
     ContactState              state(contact.size(), true);
-    ContactSolver<3>          solver(discretization, without_safeguards(parameters.solver));
-    const SolverReport report = solver.solve(u, state);
+    ContactSolver<3>          solver(discretization,
+                            without_safeguards(parameters.solver));
+    const SolverReport        report = solver.solve(u, state);
     discretization.hanging_nodes().distribute(u);
 
     double     error = 0, scale = 0;

@@ -117,8 +117,8 @@ main(int argc, char *argv[])
   const auto mesh = make_triangulation<2>();
   scene.make_coarse_mesh(*mesh);
   const Discretized<2> d(scene, *mesh);
-  const Node              node      = {d};
-  const auto              solutions = all_solutions(scene.materials().base());
+  const Node           node      = {d};
+  const auto           solutions = all_solutions(scene.materials().base());
   check(d.contact().size() == 1, "there is one contact node");
 
   // Each of them satisfies the discrete law.

@@ -179,8 +179,9 @@ namespace
 
 
 
-  // No solution satisfies the laws to the last digit. If that is what is asked for,
-  // everything is tried, and what is said in the end is that it was not enough.
+  // No solution satisfies the laws to the last digit. If that is what is asked
+  // for, everything is tried, and what is said in the end is that it was not
+  // enough.
   void
   test_failure()
   {

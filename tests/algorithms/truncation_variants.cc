@@ -59,8 +59,8 @@ main(int argc, char **argv)
   } while (iteration.advance());
   std::cout << iteration.discretization().dof_handler().n_dofs()
             << " degrees of freedom, " << iteration.state().n_contact()
-            << " nodes in contact, " << iteration.state().n_sticking() << " stick"
-            << std::endl;
+            << " nodes in contact, " << iteration.state().n_sticking()
+            << " stick" << std::endl;
 
   const auto at_most = [&](const Variant &variant, const unsigned int bound) {
     bool result = true;

@@ -56,7 +56,8 @@ namespace
                 std::max(difference,
                          std::abs(other.local_element(i) -
                                   contest.solution().local_element(i)));
-        check(result.converged && result.n_contact == nest.state().n_contact() &&
+        check(result.converged &&
+                result.n_contact == nest.state().n_contact() &&
                 result.n_sticking == nest.state().n_sticking(),
               name + ": certified, and the same states");
         if (name.compare(0, 6, "newton") == 0)
@@ -78,7 +79,7 @@ namespace
       SCENES_DIR "/hertz.prm",
       {"Refinement/Maximum dofs=400", "Solver/Inner tolerance=1e-12"}));
     nest.begin();
-    double             n_coarser = 0;
+    double n_coarser = 0;
     do
       {
         if (nest.level() > 0)

@@ -40,8 +40,8 @@ namespace Benchmark
       size = 1e-3 * GridTools::diameter(nest.mesh());
 
     VectorType &guess = *nest.guess()[0], &tractions = *nest.guess()[1];
-    guess             = 0.;
-    tractions         = 0.;
+    guess     = 0.;
+    tractions = 0.;
     if (name == "random")
       {
         std::mt19937 random(1);

@@ -75,9 +75,9 @@ main(int argc, char **argv)
   auto           mesh = make_triangulation<2>();
   scene.make_coarse_mesh(*mesh);
   mesh->refine_global(1);
-  const Discretized<2>              d(scene, *mesh), d0(without, *mesh);
-  const Eigen::MatrixXd                got      = to_dense(d.stiffness().blocks());
-  Eigen::MatrixXd                      expected = to_dense(d0.stiffness().blocks());
+  const Discretized<2>  d(scene, *mesh), d0(without, *mesh);
+  const Eigen::MatrixXd got      = to_dense(d.stiffness().blocks());
+  Eigen::MatrixXd       expected = to_dense(d0.stiffness().blocks());
   std::vector<types::global_dof_index> indices(8);
   for (const auto &cell : d.dof_handler().active_cell_iterators())
     {
@@ -85,8 +85,9 @@ main(int argc, char **argv)
       cell->get_dof_indices(indices);
       for (unsigned int i = 0; i < 8; ++i)
         for (unsigned int j = 0; j < 8; ++j)
-          expected(indices[i], indices[j]) += scene.materials().base().lambda() *
-            K.integrals[i / 2][i % 2] * K.integrals[j / 2][j % 2] / K.volume;
+          expected(indices[i], indices[j]) +=
+            scene.materials().base().lambda() * K.integrals[i / 2][i % 2] *
+            K.integrals[j / 2][j % 2] / K.volume;
     }
   check_below((got - expected).cwiseAbs().maxCoeff() /
                 expected.cwiseAbs().maxCoeff(),
@@ -102,7 +103,7 @@ main(int argc, char **argv)
     pointwise(1., .3, VolumetricStrain::pointwise);
   const VolumetricStrainField<2> field(
     d.mapping(), d.dof_handler(), averaged, u);
-  double difference = 0.;
+  double difference    = 0.;
   bool   is_divergence = true;
   for (const auto &cell : d.dof_handler().active_cell_iterators())
     {
@@ -112,10 +113,9 @@ main(int argc, char **argv)
         for (unsigned int c = 0; c < 2; ++c)
           strain +=
             K.integrals[v][c] / K.volume * u(cell->vertex_dof_index(v, c));
-      difference = std::max(difference,
+      difference    = std::max(difference,
                             std::abs(field.value(cell, averaged, 7.) - strain));
-      is_divergence =
-        is_divergence && field.value(cell, pointwise, 7.) == 7.;
+      is_divergence = is_divergence && field.value(cell, pointwise, 7.) == 7.;
     }
   check_below(difference, 1e-12, "mean volumetric strain of a displacement");
   check(is_divergence, "the pointwise one is the divergence");

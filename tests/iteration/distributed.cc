@@ -2,9 +2,11 @@
 // whole problem on its own, on the same mesh, with hanging nodes on the contact
 // boundary, and the two are compared vertex by vertex:
 //
-// - contact nodes with normals, gaps and measures, and the rows of the stiffness
+// - contact nodes with normals, gaps and measures, and the rows of the
+// stiffness
 //   matrix;
-// - the matrices of all levels, with random projectors and second derivatives at
+// - the matrices of all levels, with random projectors and second derivatives
+// at
 //   contact nodes, after a fresh assembly and after updates; updates must agree
 //   with fresh assemblies to the last bit on several processes, too;
 // - the solution, with the same phases, certificate and energy.
@@ -16,10 +18,10 @@
 // nor that evaluated by one alone.
 
 #include <common/algorithms/contact_solver.h>
-#include <common/iteration/truncated_correction.h>
-#include <common/nodes/interface_damping.h>
-#include <common/levels/level_matrices.h>
 #include <common/iteration/monotone_smoother.h>
+#include <common/iteration/truncated_correction.h>
+#include <common/levels/level_matrices.h>
+#include <common/nodes/interface_damping.h>
 #include <common/parallel/phase_costs.h>
 #include <common/parallel/reductions.h>
 
@@ -106,7 +108,8 @@ namespace
                 d.constraints().node_of_dof(cell->vertex_dof_index(v, 0));
               points[node] = cell->vertex(v);
             }
-      for (unsigned int node = 0; node < d.constraints().n_owned_nodes(); ++node)
+      for (unsigned int node = 0; node < d.constraints().n_owned_nodes();
+           ++node)
         leaf_nodes[key_of(points[node])] = node;
       for (unsigned int k = 0; k < mesh->n_global_levels(); ++k)
         {
@@ -231,25 +234,29 @@ namespace
     for (unsigned int i = 0; i < d.stiffness().blocks().n_rows(); ++i)
       {
         const unsigned int row = alone.leaf_nodes.at(key_of(all.points[i]));
-        missing += std::abs(
-          static_cast<double>(d.stiffness().blocks().row_end(i) - d.stiffness().blocks().row_begin(i)) -
-          (e.stiffness().blocks().row_end(row) - e.stiffness().blocks().row_begin(row)));
-        for (std::size_t k = d.stiffness().blocks().row_begin(i); k < d.stiffness().blocks().row_end(i);
+        missing +=
+          std::abs(static_cast<double>(d.stiffness().blocks().row_end(i) -
+                                       d.stiffness().blocks().row_begin(i)) -
+                   (e.stiffness().blocks().row_end(row) -
+                    e.stiffness().blocks().row_begin(row)));
+        for (std::size_t k = d.stiffness().blocks().row_begin(i);
+             k < d.stiffness().blocks().row_end(i);
              ++k)
           {
             const unsigned int j = d.stiffness().blocks().column(k);
             Point<dim>         point;
             for (unsigned int c = 0; c < dim; ++c)
               point[c] = where.local_element(dim * j + c);
-            const std::size_t l =
-              e.stiffness().blocks().find(row, alone.leaf_nodes.at(key_of(point)));
+            const std::size_t l = e.stiffness().blocks().find(
+              row, alone.leaf_nodes.at(key_of(point)));
             if (l == e.stiffness().blocks().row_end(row))
               ++missing;
             else
               for (unsigned int b = 0; b < dim * dim; ++b)
-                difference = std::max(
-                  difference,
-                  std::abs(d.stiffness().blocks().block(k)[b] - e.stiffness().blocks().block(l)[b]));
+                difference =
+                  std::max(difference,
+                           std::abs(d.stiffness().blocks().block(k)[b] -
+                                    e.stiffness().blocks().block(l)[b]));
           }
       }
     report(missing, 0., "rows of the stiffness matrix have the same pattern");
@@ -268,8 +275,7 @@ namespace
     double difference = 0;
     for (unsigned int k = 0; k < all_matrices.n_levels(); ++k)
       {
-        const auto &numbering =
-          all.hierarchy().level(k).numbering();
+        const auto &numbering = all.hierarchy().level(k).numbering();
         const auto &A = all_matrices.matrix(k), &B = alone_matrices.matrix(k);
         double      scale = 0;
         for (unsigned int i = 0; i < B.n_rows(); ++i)
@@ -309,8 +315,10 @@ namespace
                          const unsigned int  seed)
   {
     const auto        &d = all.discretization, &e = alone.discretization;
-    LevelMatrices<dim> matrices(d.stiffness().blocks(), all.hierarchy(), d.constraints()),
-      alone_matrices(e.stiffness().blocks(), alone.hierarchy(), e.constraints());
+    LevelMatrices<dim> matrices(
+      d.stiffness().blocks(), all.hierarchy(), d.constraints()),
+      alone_matrices(
+        e.stiffness().blocks(), alone.hierarchy(), e.constraints());
     report(largest_difference(matrices, all, alone_matrices, alone),
            1e-13,
            "level matrices are those of one process");
@@ -326,7 +334,8 @@ namespace
         difference = std::max(
           difference, largest_difference(matrices, all, alone_matrices, alone));
 
-        LevelMatrices<dim> fresh(d.stiffness().blocks(), all.hierarchy(), d.constraints());
+        LevelMatrices<dim> fresh(
+          d.stiffness().blocks(), all.hierarchy(), d.constraints());
         fresh.update(truncation);
         for (unsigned int k = 0; k < matrices.n_levels(); ++k)
           for (std::size_t p = 0; p < matrices.matrix(k).n_blocks(); ++p)
@@ -345,7 +354,7 @@ namespace
   void
   check_cycle(const Problem<dim> &all, const unsigned int seed)
   {
-    const auto      &d = all.discretization;
+    const auto              &d = all.discretization;
     Levels<dim>              levels(d.dof_handler(), d.problem());
     TruncatedCorrection<dim> cycle(levels, Cycle::V, 2);
     const Truncation<dim>    truncation = all.truncation(seed, 1.);
@@ -443,7 +452,8 @@ namespace
     // tested.
     double n_damped = 0;
     for (unsigned int i = 0; i < d.stiffness().blocks().n_rows(); ++i)
-      n_damped += interface_damping(d.stiffness().blocks(), i) != zero_block<dim>();
+      n_damped +=
+        interface_damping(d.stiffness().blocks(), i) != zero_block<dim>();
     n_damped = sum_over_processes(n_damped, MPI_COMM_WORLD);
     if (dim == 3)
       report(Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) >= 4 &&
@@ -480,8 +490,7 @@ namespace
     ContactState w(state);
     const auto   n_messages = [&]() {
       std::size_t sum = 0;
-      for (const PhaseCost &cost :
-           phase_costs(d.constraints().communicator()))
+      for (const PhaseCost &cost : phase_costs(d.constraints().communicator()))
         sum += cost.messages;
       return sum;
     };
@@ -509,9 +518,9 @@ namespace
   void
   check_monotonicity(const Problem<dim> &all, const unsigned int seed)
   {
-    const auto                &d       = all.discretization;
-    DiscreteProblem<dim>       problem = d.problem();
-    problem.friction_law               = FrictionLaw::tresca;
+    const auto          &d       = all.discretization;
+    DiscreteProblem<dim> problem = d.problem();
+    problem.friction_law         = FrictionLaw::tresca;
     for (const auto correction :
          {CoarseCorrection::truncated, CoarseCorrection::monotone})
       {
@@ -519,8 +528,8 @@ namespace
         settings.coarse_correction = correction;
         ContactSolver<dim> solver(
           d.dof_handler(), problem, without_safeguards(settings));
-        VectorType         u = admissible_start(d);
-        ContactState       state(d.contact().size(), true);
+        VectorType   u = admissible_start(d);
+        ContactState state(d.contact().size(), true);
         for (unsigned int p = 0; p < d.contact().size(); ++p)
           {
             Random random = random_at(d.contact()[p].point, seed + 1);

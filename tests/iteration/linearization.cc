@@ -255,7 +255,7 @@ namespace
   add_remainders(Remainders               &sums,
                  const RandomProblem<dim> &problem,
                  const Linearization<dim> &linearization,
-                 const Sample            &it,
+                 const Sample             &it,
                  Random                   &random)
   {
     const TrescaFunctional<dim> functional(problem.discretization.problem());
@@ -299,8 +299,8 @@ namespace
   void
   test_derivatives(const RandomProblem<dim> &problem, Random &random)
   {
-    const auto       &contact     = problem.contact();
-    const std::string F           = "omega'': ";
+    const auto                &contact  = problem.contact();
+    const std::string          F        = "omega'': ";
     const DiscreteProblem<dim> discrete = problem.friction_problem(friction);
 
     std::vector<unsigned int> n_of_phase(n_phases, 0);
@@ -312,7 +312,7 @@ namespace
     for (unsigned int sample = 0; sample < 30; ++sample)
       {
         const Sample it   = make_sample<dim>(problem, random);
-        const auto    make = [&](const TruncationVariant variant) {
+        const auto   make = [&](const TruncationVariant variant) {
           Linearization<dim> result(discrete, variant);
           update(result, it.u, it.state);
           return result;
@@ -449,9 +449,9 @@ namespace
     const TrescaFunctional<dim> functional(problem.discretization.problem());
     const DiscreteProblem<dim>  discrete = problem.friction_problem(friction);
     Linearization<dim> linearization(discrete, TruncationVariant::phases);
-    double       prescribed = 0, penetration = -infinity, reversed = 0;
-    bool         zero_inside = true, still = true;
-    unsigned int n_at_bound = 0, n_stopped = 0;
+    double             prescribed = 0, penetration = -infinity, reversed = 0;
+    bool               zero_inside = true, still = true;
+    unsigned int       n_at_bound = 0, n_stopped = 0;
     for (unsigned int sample = 0; sample < 30; ++sample)
       {
         const Sample it = make_sample<dim>(problem, random);
@@ -526,9 +526,9 @@ namespace
   void
   test_refresh(const RandomProblem<3> &problem, Random &random)
   {
-    const auto   &contact = problem.contact();
+    const auto  &contact = problem.contact();
     const Sample it      = make_sample<3>(problem, random);
-    unsigned int  p       = 0;
+    unsigned int p       = 0;
     while (it.phases[p] != slip || contact[p].n_free_tangents < 2)
       ++p;
     const ContactNode<3> &node      = contact[p];

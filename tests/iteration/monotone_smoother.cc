@@ -85,7 +85,7 @@ namespace
                     const double              friction,
                     Random                   &random)
   {
-    const auto                 &d = problem.discretization;
+    const auto                 &d    = problem.discretization;
     const DiscreteProblem<dim>  disc = problem.friction_problem(friction);
     const TrescaFunctional<dim> functional(disc);
     VectorType                  u = random_start<dim>(problem, random);
@@ -102,11 +102,8 @@ namespace
           if (j != i && !held.is_hanging(j))
             for (unsigned int d = 0; d < dim; ++d)
               held.prescribe(j, d, u.local_element(dim * j + d));
-        const ContactBoundary<dim> contact(d.mapping(),
-                                           d.dof_handler(),
-                                           d.hanging_nodes(),
-                                           held,
-                                           problem.scene);
+        const ContactBoundary<dim> contact(
+          d.mapping(), d.dof_handler(), d.hanging_nodes(), held, problem.scene);
         const DiscreteProblem<dim> of_node = {disc.stiffness,
                                               disc.forces,
                                               held,
@@ -124,8 +121,8 @@ namespace
             single.set_normal_force(0, state.normal_force(number));
           }
         const MonotoneSmoother<dim> smoother(of_node);
-        const VectorType before = u;
-        const double     energy = functional.energy(u, state);
+        const VectorType            before = u;
+        const double                energy = functional.energy(u, state);
         sweep(smoother, u, single, false, random.chance(.5));
         const double now = functional.energy(u, state);
         increase         = std::max(increase, now - energy);
@@ -332,8 +329,8 @@ namespace
     const RandomProblem<dim>    problem(parameters, 2, .5, random);
     const DiscreteProblem<dim>  disc = problem.friction_problem(0.);
     const MonotoneSmoother<dim> smoother(disc);
-    ContactState state(problem.contact().size(), false);
-    const auto   product = [&](const VectorType &a, const VectorType &b) {
+    ContactState                state(problem.contact().size(), false);
+    const auto product = [&](const VectorType &a, const VectorType &b) {
       VectorType Ab(b);
       disc.stiffness.vmult(Ab, b);
       return a * Ab;
@@ -380,10 +377,10 @@ namespace
                    const bool                coulomb,
                    Random                   &random)
   {
-    const DiscreteProblem<dim>  disc = problem.friction_problem(
+    const DiscreteProblem<dim> disc = problem.friction_problem(
       friction, coulomb ? FrictionLaw::coulomb : FrictionLaw::tresca);
     const MonotoneSmoother<dim> smoother(disc);
-    VectorType   u     = random_start<dim>(problem, random);
+    VectorType                  u = random_start<dim>(problem, random);
     ContactState state = random_state<dim>(problem, friction, random);
     for (unsigned int n = 0; n < 2500; ++n)
       sweep(smoother, u, state, coulomb, n % 2);

@@ -17,7 +17,7 @@ because() {
 # Warnings of our sources, each once, in what a build has printed.
 n_warnings() {
   cat "$@" |
-    grep -E '(/friction/|^)(common|step-friction-..|tests)/[^ ]*: warning:|^(cc1plus|clang|g\+\+|ld|mold|/usr/bin/)[^ ]*: warning|^CMake Warning' |
+    grep -E '(/friction/|^)(common|step-friction-..|tests)/[^ ]*: warning:|^(cc1plus|clang|g\+\+|ld|mold|/usr/bin/)[^ ]*: warning|^CMake (Deprecation )?Warning' |
     sort -u | tee warnings.log | wc -l
 }
 
@@ -69,7 +69,7 @@ if [ -n "$tag" ]; then
   checked=$(python3 -B tests/portability/check_syntax.py \
     build/headers/compile_commands.json tests/install/program/block.cc 2>syntax.log) ||
     because "$(grep -m1 'error:' syntax.log | tr '|' ' ')"
-  warnings=$(n_warnings syntax.log)
+  warnings=$(n_warnings configure.log syntax.log)
   echo "| $suite, headers | $(version_of_compiler) | $version | $configured | $warnings | – | syntax: $checked | $reason |" \
     >"$result"
   exit 0

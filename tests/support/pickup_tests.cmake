@@ -8,6 +8,7 @@
 #   studies  figures, charts and benchmarks, on tiny meshes
 #   pages    prose, commands of pages, pages in a browser
 #   shipped  with sanitizers only: every scene as it is shipped
+#   build    what only builds, where programs are built on demand
 #
 # deal.II itself sets a property LABEL, which ctest does not know.
 

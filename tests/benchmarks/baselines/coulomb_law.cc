@@ -194,8 +194,8 @@ namespace Benchmark
     std::vector<double> stiffness;
     for (const ContactNode<dim> &node : problem.contact)
       {
-        const auto block =
-          rotated.block(node.node, problem.stiffness.blocks().row_begin(node.node));
+        const auto block = rotated.block(
+          node.node, problem.stiffness.blocks().row_begin(node.node));
         stiffness.push_back(
           3. * block[0] *
           std::pow(node.measure / std::max(size, node.measure),

@@ -1,8 +1,8 @@
 #ifndef friction_tests_benchmarks_gauss_seidel_h
 #define friction_tests_benchmarks_gauss_seidel_h
 
-#include <common/iteration/monotone_smoother.h>
 #include <common/discretization/discrete_problem.h>
+#include <common/iteration/monotone_smoother.h>
 
 #include <tests/benchmarks/baselines/report.h>
 

@@ -144,8 +144,8 @@ namespace Benchmark
         if (present[p] == amg_second[p])
           continue;
         const unsigned int node = rotated.problem.contact[p].node;
-        const auto         A =
-          rotated.block(node, rotated.problem.stiffness.blocks().row_begin(node));
+        const auto         A    = rotated.block(
+          node, rotated.problem.stiffness.blocks().row_begin(node));
         const Eigen::Map<const Matrix> D(A.data()),
           before(amg_second[p].data()), now(present[p].data());
         const Eigen::LLT<Matrix> C(D + before), C_now(D + now);
@@ -361,8 +361,8 @@ namespace Benchmark
             for (unsigned int p = 0; p < laws.size(); ++p)
               {
                 const unsigned int node = rotated.problem.contact[p].node;
-                const auto         A =
-                  rotated.block(node, rotated.problem.stiffness.blocks().row_begin(node));
+                const auto         A    = rotated.block(
+                  node, rotated.problem.stiffness.blocks().row_begin(node));
                 for (unsigned int e = 0; e < dim; ++e)
                   known += A[e * dim + e] *
                     std::pow(v.local_element(dim * node + e), 2);

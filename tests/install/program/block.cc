@@ -21,9 +21,9 @@ main(int argc, char **argv)
   discretization.set_up();
   discretization.assemble(elasticity<2>(scene.materials()));
 
-  VectorType         u = discretization.vector(), no_tractions(u);
-  ContactState       state = make_initial_guess(discretization, u, no_tractions);
-  ContactSolver<2>   solver(discretization, parameters.solver);
+  VectorType       u     = discretization.vector(), no_tractions(u);
+  ContactState     state = make_initial_guess(discretization, u, no_tractions);
+  ContactSolver<2> solver(discretization, parameters.solver);
   const SolverReport report = solver.solve(u, state);
   std::cout << state.n_contact() << " nodes in contact, " << state.n_sticking()
             << " of them stick, "
