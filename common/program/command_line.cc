@@ -117,7 +117,13 @@ namespace Friction
     // before the first process ends with a status other than 0, upon which
     // mpirun may end the others.
     const auto start_of_program = std::chrono::steady_clock::now();
-    Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+    // deal.II starts other libraries along with MPI, which would look for
+    // options of theirs among ours: PETSc 3.22 tells on standard output which
+    // ones it does not know. They get the name of the program.
+    int                              n_names = 1;
+    char                            *names[] = {argv[0], nullptr};
+    char                           **name    = names;
+    Utilities::MPI::MPI_InitFinalize mpi(n_names, name, 1);
     RunClock                         clock(start_of_program);
     clock.attach(MPI_COMM_WORLD);
     const bool speaks = Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;

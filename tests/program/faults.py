@@ -93,7 +93,8 @@ class Faults:
         if checkpoint:
             words.append("Output/Checkpoint=true")
         if n > 1:
-            words = [self.options.mpiexec, self.options.numproc_flag, str(n), *words]
+            # mpirun writes files as well; it gives its processes signals of their own.
+            words = [*ignoring, self.options.mpiexec, self.options.numproc_flag, str(n), *words]
         return words
 
     def start(self, *arguments, longest_file=None, **keywords):

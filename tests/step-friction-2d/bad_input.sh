@@ -188,6 +188,8 @@ full()
 {
   (
     trap '' XFSZ
+    # Open MPI's shared memory is a file, too, and longer than that.
+    export OMPI_MCA_btl=self
     ulimit -f "$1"
     shift
     run "$@"

@@ -164,7 +164,10 @@ def read_history(directory):
         with h5py.File(path) as file:
             text = file.attrs["parameters"]
             columns = {name: item[()] for name, item in file["levels"].items()}
-            levels = [{name: column[i] for name, column in columns.items()}
+            # Python's own numbers: those of numpy 2 keep the type of the file, and
+            # one less than zero of an unsigned type is a large number.
+            levels = [{name: column[i].item() if isinstance(column[i], np.generic)
+                       else column[i] for name, column in columns.items()}
                       for i in range(len(columns["level"]))]
             for i, row in enumerate(levels):
                 row["normal_forces_before"] = columns["normal_force"][:i]
