@@ -94,8 +94,8 @@ namespace
   // On all meshes and in all load steps of a scene. Steps are counted on the
   // average: where a node turns from one direction of slip to the other, a step
   // may pass the law's kink again and again until it has become short, and
-  // whether it does is decided by rounding. In the second of the load steps,
-  // with three nodes in contact, it takes 4 to 12.
+  // whether it does is decided by rounding. A load step of the scene mindlin
+  // with three nodes in contact takes 4 to 12.
   template <int dim>
   void
   test_agreement(const std::string &what,

@@ -101,8 +101,10 @@ class Faults:
         """In a process group of its own, with the output in files."""
         limited, environment = longest_file is not None, dict(os.environ)
         if limited:
-            # Processes exchange messages without files, which may be longer.
-            environment.update(OMPI_MCA_btl="self,tcp", PMIX_MCA_gds="hash")
+            # Processes exchange messages without files, which may be longer, and on
+            # this machine only.
+            environment.update(OMPI_MCA_btl="self,tcp", PMIX_MCA_gds="hash",
+                               OMPI_MCA_btl_tcp_if_include="lo")
 
         def limit():
             if limited:
