@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """Draws which folders of the library use which, from their #include lines:
 
-    folders.py COMMON [PICTURE.svg]
+    folders.py COMMON PICTURE.svg
+    folders.py COMMON --check PICTURE.svg
 
-Folders that others build on are at the bottom. Without a picture the order is only
-printed, each folder with those it uses. A circle among folders is an error, and so is
-a header that does not exist."""
+Folders that others build on are at the bottom. Each folder with those it uses is
+printed, and is the description in the picture's own data; --check draws nothing, and
+compares with that. A circle among folders is an error, and so is a header that does
+not exist."""
 
 import re
 import sys
@@ -58,7 +60,7 @@ def essential(used):
             for name in used}
 
 
-def draw(order, arrows, picture):
+def draw(order, arrows, description, picture):
     import matplotlib
     matplotlib.use("svg")
     import matplotlib.pyplot as plt
@@ -81,22 +83,27 @@ def draw(order, arrows, picture):
     axes.set_xlim(-3, 3)
     axes.set_ylim(-.5, len(order) - .5)
     axes.axis("off")
-    figure.savefig(picture, bbox_inches="tight", metadata={"Date": None})
+    figure.savefig(picture, bbox_inches="tight", metadata={"Date": None, "Description": description})
 
 
 def main():
-    if len(sys.argv) not in (2, 3):
+    checks = sys.argv[2:3] == ["--check"]
+    if len(sys.argv) != (4 if checks else 3):
         sys.exit(__doc__)
+    picture = Path(sys.argv[-1])
     used, problems = dependencies(Path(sys.argv[1]))
     order, circle = layers(used)
     if circle:
         problems.append("a circle among the folders " + ", ".join(circle))
     if problems:
         sys.exit("\n".join(problems))
-    for name in [name for layer in order for name in layer]:
-        print(f"{name}: {', '.join(sorted(used[name])) or 'none'}")
-    if len(sys.argv) == 3:
-        draw(order, essential(used), sys.argv[2])
+    description = "; ".join(f"{name}: {', '.join(sorted(used[name])) or 'none'}"
+                            for layer in order for name in layer)
+    print(description.replace("; ", "\n"))
+    if not checks:
+        draw(order, essential(used), description, picture)
+    elif description not in " ".join(picture.read_text().split()):
+        sys.exit(f"{picture} shows an earlier state: make the target folders")
 
 
 if __name__ == "__main__":
