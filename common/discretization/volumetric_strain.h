@@ -1,6 +1,7 @@
 #ifndef friction_discretization_volumetric_strain_h
 #define friction_discretization_volumetric_strain_h
 
+#include <common/parallel/vector_type.h>
 #include <common/scene/materials.h>
 
 #include <deal.II/base/table.h>
@@ -10,7 +11,6 @@
 
 #include <deal.II/fe/fe_values.h>
 
-#include <deal.II/lac/la_parallel_vector.h>
 
 #include <vector>
 
@@ -68,7 +68,6 @@ namespace Friction
   class VolumetricStrainField
   {
   public:
-    using VectorType   = dealii::LinearAlgebra::distributed::Vector<double>;
     using CellIterator = typename dealii::DoFHandler<dim>::active_cell_iterator;
 
     /** @param displacement with ghost values and hanging nodes interpolated. */

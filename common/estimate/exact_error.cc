@@ -51,7 +51,7 @@ namespace Friction
                       const DoFHandler<dim> &dof_handler,
                       const Materials<dim>  &materials,
                       const Function<dim>   &exact,
-                      const LinearAlgebra::distributed::Vector<double> &u_h)
+                      const VectorType      &u_h)
   {
     const VolumetricStrainField<dim> volumetric_strain(
       mapping, dof_handler, materials, u_h);
@@ -111,16 +111,14 @@ namespace Friction
 
 
 
-  template ExactError
-  compute_exact_error(const Mapping<2> &,
-                      const DoFHandler<2> &,
-                      const Materials<2> &,
-                      const Function<2> &,
-                      const LinearAlgebra::distributed::Vector<double> &);
-  template ExactError
-  compute_exact_error(const Mapping<3> &,
-                      const DoFHandler<3> &,
-                      const Materials<3> &,
-                      const Function<3> &,
-                      const LinearAlgebra::distributed::Vector<double> &);
+  template ExactError compute_exact_error(const Mapping<2> &,
+                                          const DoFHandler<2> &,
+                                          const Materials<2> &,
+                                          const Function<2> &,
+                                          const VectorType &);
+  template ExactError compute_exact_error(const Mapping<3> &,
+                                          const DoFHandler<3> &,
+                                          const Materials<3> &,
+                                          const Function<3> &,
+                                          const VectorType &);
 } // namespace Friction

@@ -1,6 +1,7 @@
 #ifndef friction_estimate_exact_error_h
 #define friction_estimate_exact_error_h
 
+#include <common/parallel/vector_type.h>
 #include <common/scene/materials.h>
 
 #include <deal.II/base/function.h>
@@ -9,7 +10,6 @@
 
 #include <deal.II/fe/mapping.h>
 
-#include <deal.II/lac/la_parallel_vector.h>
 
 #include <string>
 
@@ -42,12 +42,11 @@ namespace Friction
    * @param displacement  with ghost values and hanging nodes interpolated.
    */
   template <int dim>
-  ExactError compute_exact_error(
-    const dealii::Mapping<dim>                               &mapping,
-    const dealii::DoFHandler<dim>                            &dof_handler,
-    const Materials<dim>                                     &materials,
-    const dealii::Function<dim>                              &exact,
-    const dealii::LinearAlgebra::distributed::Vector<double> &displacement);
+  ExactError compute_exact_error(const dealii::Mapping<dim>    &mapping,
+                                 const dealii::DoFHandler<dim> &dof_handler,
+                                 const Materials<dim>          &materials,
+                                 const dealii::Function<dim>   &exact,
+                                 const VectorType              &displacement);
 } // namespace Friction
 
 #endif

@@ -257,7 +257,6 @@ namespace Friction
     class Estimator
     {
     public:
-      using VectorType   = LinearAlgebra::distributed::Vector<double>;
       using CellIterator = typename DoFHandler<dim>::active_cell_iterator;
 
       Estimator(const Mapping<dim>          &mapping,
@@ -928,11 +927,11 @@ namespace Friction
 
   template <int dim>
   ErrorEstimate
-  estimate_error(const Mapping<dim>                               &mapping,
-                 const DoFHandler<dim>                            &dof_handler,
-                 const EstimatorProblem<dim>                      &problem,
-                 const LinearAlgebra::distributed::Vector<double> &displacement,
-                 const EstimatorContact                           &contact)
+  estimate_error(const Mapping<dim>          &mapping,
+                 const DoFHandler<dim>       &dof_handler,
+                 const EstimatorProblem<dim> &problem,
+                 const VectorType            &displacement,
+                 const EstimatorContact      &contact)
   {
     return Estimator<dim>(mapping, dof_handler, problem, displacement, contact)
       .run();
@@ -940,16 +939,14 @@ namespace Friction
 
 
 
-  template ErrorEstimate
-  estimate_error<2>(const Mapping<2> &,
-                    const DoFHandler<2> &,
-                    const EstimatorProblem<2> &,
-                    const LinearAlgebra::distributed::Vector<double> &,
-                    const EstimatorContact &);
-  template ErrorEstimate
-  estimate_error<3>(const Mapping<3> &,
-                    const DoFHandler<3> &,
-                    const EstimatorProblem<3> &,
-                    const LinearAlgebra::distributed::Vector<double> &,
-                    const EstimatorContact &);
+  template ErrorEstimate estimate_error<2>(const Mapping<2> &,
+                                           const DoFHandler<2> &,
+                                           const EstimatorProblem<2> &,
+                                           const VectorType &,
+                                           const EstimatorContact &);
+  template ErrorEstimate estimate_error<3>(const Mapping<3> &,
+                                           const DoFHandler<3> &,
+                                           const EstimatorProblem<3> &,
+                                           const VectorType &,
+                                           const EstimatorContact &);
 } // namespace Friction

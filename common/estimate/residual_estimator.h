@@ -1,6 +1,7 @@
 #ifndef friction_estimate_residual_estimator_h
 #define friction_estimate_residual_estimator_h
 
+#include <common/parallel/vector_type.h>
 #include <common/scene/materials.h>
 
 #include <deal.II/base/function.h>
@@ -11,7 +12,6 @@
 #include <deal.II/fe/component_mask.h>
 #include <deal.II/fe/mapping.h>
 
-#include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/lac/vector.h>
 
 #include <map>
@@ -68,8 +68,6 @@ namespace Friction
    */
   struct EstimatorContact
   {
-    using VectorType = dealii::LinearAlgebra::distributed::Vector<double>;
-
     /// Nodal contact tractions: force on the body over nodal measure, 0 at open
     /// nodes.
     const VectorType *traction = nullptr;
@@ -142,10 +140,9 @@ namespace Friction
    * multiplier $t_h$, the nodal contact tractions interpolated linearly, takes
    * the place of a prescribed traction, and what remains of the contact laws
    * between the nodes, $u_{h,T}$ counted from where friction does, is added
-   * (Hild and Nicaise, Numer. Math. 101, 2005, for
-   * contact; Krause, Veeser and Walloth, Numer. Math. 130, 2015, for the
-   * distinction between the discrete contact force and the boundary stress).
-   * $p_h=-t_h\cdot n$.
+   * (Hild and Nicaise, Numer. Math. 101, 2005, for contact; Krause, Veeser and
+   * Walloth, Numer. Math. 130, 2015, for the distinction between the discrete
+   * contact force and the boundary stress). $p_h=-t_h\cdot n$.
    *
    * Where materials meet the $\mu$ of an edge is the larger one of both sides
    * (Bernardi and Verfürth, Numer. Math. 85, 2000).
@@ -174,12 +171,12 @@ namespace Friction
    * @param displacement with ghost values and hanging nodes interpolated.
    */
   template <int dim>
-  ErrorEstimate estimate_error(
-    const dealii::Mapping<dim>                               &mapping,
-    const dealii::DoFHandler<dim>                            &dof_handler,
-    const EstimatorProblem<dim>                              &problem,
-    const dealii::LinearAlgebra::distributed::Vector<double> &displacement,
-    const EstimatorContact &contact = EstimatorContact());
+  ErrorEstimate
+  estimate_error(const dealii::Mapping<dim>    &mapping,
+                 const dealii::DoFHandler<dim> &dof_handler,
+                 const EstimatorProblem<dim>   &problem,
+                 const VectorType              &displacement,
+                 const EstimatorContact        &contact = EstimatorContact());
 } // namespace Friction
 
 #endif

@@ -16,8 +16,6 @@ namespace Friction
 
   namespace
   {
-    using VectorType = LinearAlgebra::distributed::Vector<double>;
-
     const std::string prefix     = "checkpoint";
     const std::string unfinished = ".part";
 

@@ -7,9 +7,9 @@
 
 #include <deal.II/dofs/dof_handler.h>
 
-#include <deal.II/lac/la_parallel_vector.h>
 
 #include <common/output/run_directory.h>
+#include <common/parallel/vector_type.h>
 
 #include <string>
 #include <vector>
@@ -65,13 +65,12 @@ namespace Friction
      * @param vectors  on the mesh of that level.
      */
     template <int dim>
-    void save(
-      const unsigned int                                       level,
-      const std::vector<char>                                 &record,
-      const dealii::parallel::distributed::Triangulation<dim> &triangulation,
-      const dealii::DoFHandler<dim>                           &dof_handler,
-      const std::vector<const dealii::LinearAlgebra::distributed::Vector<double>
-                          *>                                  &vectors) const;
+    void
+    save(const unsigned int                                       level,
+         const std::vector<char>                                 &record,
+         const dealii::parallel::distributed::Triangulation<dim> &triangulation,
+         const dealii::DoFHandler<dim>                           &dof_handler,
+         const std::vector<const VectorType *> &vectors) const;
 
     /**
      * The last checkpoint that is as it was written. Throws an InputError if
@@ -96,10 +95,8 @@ namespace Friction
      * vectors have been given their sizes. They have no ghost values then.
      */
     template <int dim>
-    static void load_vectors(
-      const dealii::DoFHandler<dim> &dof_handler,
-      std::vector<dealii::LinearAlgebra::distributed::Vector<double> *>
-        vectors);
+    static void load_vectors(const dealii::DoFHandler<dim> &dof_handler,
+                             std::vector<VectorType *>      vectors);
 
     /// Remove all checkpoints, and what is left of unfinished ones.
     void remove_all() const;

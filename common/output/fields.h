@@ -9,7 +9,6 @@
 #include <deal.II/fe/mapping.h>
 
 #include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/lac/vector.h>
 
 #include <boost/serialization/map.hpp>
@@ -19,6 +18,7 @@
 #include <common/output/history.h>
 #include <common/output/run_directory.h>
 #include <common/output/vtu_file.h>
+#include <common/parallel/vector_type.h>
 #include <common/parameters/parameters.h>
 #include <common/scene/materials.h>
 
@@ -42,14 +42,13 @@ namespace Friction
 
     /// Of that DoFHandler (FESystem of dim FE_Q(1)), with ghost values and
     /// hanging nodes interpolated.
-    const dealii::LinearAlgebra::distributed::Vector<double> &displacement;
+    const VectorType &displacement;
 
     /// Estimated errors, one value per active cell; or nothing.
     const dealii::Vector<float> *cell_errors = nullptr;
 
     /// Likewise the displacement that slip counts from, or nothing.
-    const dealii::LinearAlgebra::distributed::Vector<double> *slip_origin =
-      nullptr;
+    const VectorType *slip_origin = nullptr;
 
     /// What the level counts as in lists, which of two levels with the same
     /// time have the later one only; if not given, its number.
@@ -106,8 +105,6 @@ namespace Friction
   class FieldWriter
   {
   public:
-    using VectorType = dealii::LinearAlgebra::distributed::Vector<double>;
-
     /**
      * @param directory        where the files go.
      * @param materials        from which stresses follow.

@@ -1,24 +1,21 @@
 #ifndef friction_parallel_owned_values_h
 #define friction_parallel_owned_values_h
 
-#include <deal.II/lac/la_parallel_vector.h>
+#include <common/parallel/vector_type.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace Friction
 {
-  /**
-   * Vector operations on the values that a process owns. Ghosts stay as they
-   * are, and hold values of before until the next exchange. In debug mode
-   * deal.II from 9.7 on refuses this to its own operators, where a vector has
-   * ghosts that a GhostExchange has brought, of which deal.II does not know.
-   */
-  using OwnedValues = dealii::LinearAlgebra::distributed::Vector<double>;
+  // Vector operations on the values that a process owns. Ghosts stay as they
+  // are, and hold values of before until the next exchange. In debug mode
+  // deal.II from 9.7 on refuses this to its own operators, where a vector has
+  // ghosts that a GhostExchange has brought, of which deal.II does not know.
 
   /** v := factor v. */
   inline void
-  scale_owned(OwnedValues &v, const double factor)
+  scale_owned(VectorType &v, const double factor)
   {
     AssertIsFinite(factor);
     double            *values = v.begin();
@@ -30,10 +27,10 @@ namespace Friction
 
   /** u := a u + b v. */
   inline void
-  combine_owned(OwnedValues       &u,
-                const double       a,
-                const double       b,
-                const OwnedValues &v)
+  combine_owned(VectorType       &u,
+                const double      a,
+                const double      b,
+                const VectorType &v)
   {
     AssertIsFinite(a);
     AssertIsFinite(b);
@@ -48,7 +45,7 @@ namespace Friction
 
   /** u := u + factor v. */
   inline void
-  add_owned(OwnedValues &u, const double factor, const OwnedValues &v)
+  add_owned(VectorType &u, const double factor, const VectorType &v)
   {
     combine_owned(u, 1., factor, v);
   }
@@ -71,7 +68,7 @@ namespace Friction
 
   /** This process' share of u . v. */
   inline double
-  dot_owned(const OwnedValues &u, const OwnedValues &v)
+  dot_owned(const VectorType &u, const VectorType &v)
   {
     AssertDimension(u.locally_owned_size(), v.locally_owned_size());
     const double *a = u.begin(), *b = v.begin();
@@ -81,7 +78,7 @@ namespace Friction
 
   /** The largest absolute value that this process has. */
   inline double
-  largest_owned(const OwnedValues &v)
+  largest_owned(const VectorType &v)
   {
     double        largest[4] = {0., 0., 0., 0.};
     const double *values     = v.begin();

@@ -172,8 +172,8 @@ namespace
     const Traction<dim>  base(exact, lambda, mu, down),
       side(exact, lambda, mu, right);
 
-    const MappingQ1<dim>                       mapping;
-    LinearAlgebra::distributed::Vector<double> u, t;
+    const MappingQ1<dim> mapping;
+    VectorType           u, t;
     u.reinit(dof_handler.locally_owned_dofs(), MPI_COMM_WORLD);
     t.reinit(u);
     VectorTools::interpolate(mapping, dof_handler, exact, u);
@@ -328,8 +328,8 @@ namespace
     const FESystem<dim> fe(FE_Q<dim>(1), dim);
     DoFHandler<dim>     dof_handler(triangulation);
     dof_handler.distribute_dofs(fe);
-    const MappingQ1<dim>                       mapping;
-    LinearAlgebra::distributed::Vector<double> u;
+    const MappingQ1<dim> mapping;
+    VectorType           u;
     u.reinit(dof_handler.locally_owned_dofs(), MPI_COMM_WORLD);
     const VectorFunctionFromScalarFunctionObject<dim> square(
       [](const Point<dim> &p) { return p.square(); }, 0, dim);
@@ -402,8 +402,8 @@ namespace
     DoFTools::make_hanging_node_constraints(dof_handler, constraints);
     constraints.close();
 
-    const MappingQ1<dim>                       mapping;
-    LinearAlgebra::distributed::Vector<double> u, t;
+    const MappingQ1<dim> mapping;
+    VectorType           u, t;
     u.reinit(dof_handler.locally_owned_dofs(), MPI_COMM_WORLD);
     t.reinit(u);
     VectorTools::interpolate(mapping, dof_handler, Symmetric<dim>(), u);

@@ -108,8 +108,8 @@ namespace
     DoFHandler<dim>     dof_handler(triangulation);
     dof_handler.distribute_dofs(fe);
 
-    const MappingQ1<dim>                       mapping;
-    LinearAlgebra::distributed::Vector<double> u, t, n, g;
+    const MappingQ1<dim> mapping;
+    VectorType           u, t, n, g;
     for (auto *const vector : {&u, &t, &n, &g})
       vector->reinit(dof_handler.locally_owned_dofs(), MPI_COMM_WORLD);
 

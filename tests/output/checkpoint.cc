@@ -54,7 +54,6 @@ fallocate(int descriptor, int mode, off_t offset, off_t length)
 
 namespace
 {
-  using VectorType = LinearAlgebra::distributed::Vector<double>;
   template <int dim>
   using Mesh = parallel::distributed::Triangulation<dim>;
 

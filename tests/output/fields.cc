@@ -92,10 +92,9 @@ namespace
         DoFTools::make_hanging_node_constraints(dof_handler, constraints);
         constraints.close();
 
-        LinearAlgebra::distributed::Vector<double> u(
-          dof_handler.locally_owned_dofs(),
-          DoFTools::extract_locally_relevant_dofs(dof_handler),
-          MPI_COMM_WORLD);
+        VectorType u(dof_handler.locally_owned_dofs(),
+                     DoFTools::extract_locally_relevant_dofs(dof_handler),
+                     MPI_COMM_WORLD);
         u = 0.25;
         u.update_ghost_values();
 
@@ -225,9 +224,8 @@ namespace
       dof_handler.locally_owned_dofs(), relevant);
     DoFTools::make_hanging_node_constraints(dof_handler, constraints);
     constraints.close();
-    const MappingQ1<dim>                       mapping;
-    LinearAlgebra::distributed::Vector<double> u(
-      dof_handler.locally_owned_dofs(), relevant, MPI_COMM_WORLD);
+    const MappingQ1<dim> mapping;
+    VectorType u(dof_handler.locally_owned_dofs(), relevant, MPI_COMM_WORLD);
     VectorTools::interpolate(mapping, dof_handler, WavyDisplacement<dim>(), u);
     constraints.distribute(u);
     u.update_ghost_values();
@@ -390,10 +388,9 @@ namespace
     const FESystem<2> fe(FE_Q<2>(1), 2);
     DoFHandler<2>     dof_handler(triangulation);
     dof_handler.distribute_dofs(fe);
-    LinearAlgebra::distributed::Vector<double> u(
-      dof_handler.locally_owned_dofs(),
-      DoFTools::extract_locally_relevant_dofs(dof_handler),
-      MPI_COMM_WORLD);
+    VectorType u(dof_handler.locally_owned_dofs(),
+                 DoFTools::extract_locally_relevant_dofs(dof_handler),
+                 MPI_COMM_WORLD);
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
         for (const unsigned int v : cell->vertex_indices())
