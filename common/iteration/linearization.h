@@ -31,8 +31,8 @@ namespace Friction
    * is a matrix of rank one, whose only direction is the tangent perpendicular
    * to the slip. It grows without bound as the slip goes to zero and is cut off
    * where it exceeds the stiffness of the node, the mean diagonal entry of its
-   * block, by eight orders of magnitude;
-   * nothing turns there any more, and larger numbers would only cost digits.
+   * block, by eight orders of magnitude; nothing turns there any more, and
+   * larger numbers would only cost digits.
    *
    * Level matrices have to be computed anew wherever $\omega''_p$ changes, and
    * in principle it changes always and everywhere. So it is kept for as long as

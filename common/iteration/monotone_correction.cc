@@ -65,30 +65,40 @@ namespace Friction
   void
   MonotoneCorrection<dim>::prepare_visits(const unsigned int k)
   {
-    const auto          &level      = levels.hierarchy().level(k);
-    const bool           finer_last = (k + 2 == levels.hierarchy().n_levels());
-    std::vector<double> &bounds     = restricted[k];
-    const auto           room = [&](const bool is_upper, const unsigned int i) {
-      if (finer_last)
-        return is_upper ? leaf_upper.local_element(i)
-                                  : -leaf_lower.local_element(i);
-      const double moved = correction[k + 1].local_element(i);
-      return is_upper ? upper[k + 1].local_element(i) - moved
-                                : moved - lower[k + 1].local_element(i);
-    };
-
-    const NodeWeights &children =
-      finer_last ? level.leaf_children() : level.children();
+    const auto          &level  = levels.hierarchy().level(k);
+    std::vector<double> &bounds = restricted[k];
     std::fill(bounds.begin(), bounds.end(), infinity);
-    for (unsigned int node = 0; node < level.n_local_nodes(); ++node)
-      for (auto child = children.begin(node); child != children.end(node);
-           ++child)
-        for (unsigned int d = 0; d < dim; ++d)
-          for (unsigned int side = 0; side < 2; ++side)
+
+    // What children have left, upwards and downwards.
+    const auto take_minima = [&](const auto &children, const auto &room) {
+      for (unsigned int node = 0; node < level.n_local_nodes(); ++node)
+        for (auto child = children.begin(node); child != children.end(node);
+             ++child)
+          for (unsigned int d = 0; d < dim; ++d)
             {
-              double &bound = bounds[4 * (dim * node + d) + side];
-              bound = std::min(bound, room(side == 0, dim * child->node + d));
+              const std::array<double, 2> left  = room(child->node, d);
+              double                     *bound = &bounds[4 * (dim * node + d)];
+              bound[0]                          = std::min(bound[0], left[0]);
+              bound[1]                          = std::min(bound[1], left[1]);
             }
+    };
+    if (level.has_leaf_children())
+      take_minima(
+        level.leaf_children(),
+        [&](const LeafNode     child,
+            const unsigned int d) -> std::array<double, 2> {
+          const unsigned int i = dim * child.number() + d;
+          return {{leaf_upper.local_element(i), -leaf_lower.local_element(i)}};
+        });
+    else
+      take_minima(level.children(),
+                  [&](const unsigned int child,
+                      const unsigned int d) -> std::array<double, 2> {
+                    const unsigned int i = dim * child + d;
+                    const double moved   = correction[k + 1].local_element(i);
+                    return {{upper[k + 1].local_element(i) - moved,
+                             moved - lower[k + 1].local_element(i)}};
+                  });
     for (const auto &own : level.own_nodes())
       for (unsigned int d = 0; d < dim; ++d)
         {
@@ -309,7 +319,8 @@ namespace Friction
   std::size_t
   MonotoneCorrection<dim>::memory_consumption() const
   {
-    std::size_t bytes = Base::memory_consumption();
+    std::size_t bytes = Base::memory_consumption() +
+      leaf_lower.memory_consumption() + leaf_upper.memory_consumption();
     for (const auto &vectors : {&lower, &upper})
       for (const VectorType &vector : *vectors)
         bytes += vector.memory_consumption();

@@ -32,11 +32,11 @@ namespace Friction
    * positive definite; smoothers that had seen one matrix and are applied to
    * another might not be.
    *
-   * Within a multigrid cycle a few digits are enough. Iterations
-   * stop when the energy norm of the error, as the preconditioner sees it,
-   * has come down to #tolerance. Stopping early is no harm to a descent method:
-   * each iterate of conjugate gradients that start at zero lowers the energy
-   * more than the one before.
+   * Within a multigrid cycle a few digits are enough. Iterations stop when the
+   * energy norm of the error, as the preconditioner sees it, has come down to
+   * #tolerance. Stopping early is no harm to a descent method: each iterate of
+   * conjugate gradients that start at zero lowers the energy more than the one
+   * before.
    */
   class AlgebraicSolver
   {

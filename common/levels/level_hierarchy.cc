@@ -399,7 +399,8 @@ namespace Friction
                        ++e)
                     finer_columns.add(finer.columns[e]);
                 }
-            const NodeWeights &parents = levels[k + 1].parent_weights;
+            const NodeWeights<unsigned int> &parents =
+              levels[k + 1].parent_weights;
             for (const unsigned int node : finer_columns.columns)
               for (auto p = parents.begin(node); p != parents.end(node); ++p)
                 collector.add(p->node);
@@ -530,8 +531,8 @@ namespace Friction
           }
       }
 
-    std::vector<unsigned int>       starts = {0};
-    std::vector<NodeWeights::Entry> entries;
+    std::vector<unsigned int>                     starts = {0};
+    std::vector<NodeWeights<unsigned int>::Entry> entries;
     starts.reserve(level.n_local_nodes() + 1);
     entries.reserve(std::accumulate(
       parents.numbers.begin(), parents.numbers.end(), std::size_t(0)));
@@ -549,7 +550,7 @@ namespace Friction
         add_row(row.data(), row.data() + row.size());
       }
     levels[k].parent_weights =
-      NodeWeights(std::move(starts), std::move(entries));
+      NodeWeights<unsigned int>(std::move(starts), std::move(entries));
   }
 
 
@@ -563,22 +564,29 @@ namespace Friction
     Level       &level = levels[k];
     const Level &finer = levels[k + 1];
 
-    // Rows of the parents' weights, and their numbers as children.
-    std::vector<std::pair<unsigned int, unsigned int>> rows;
-    level.has_leaf_children = (k + 2 == levels.size());
-    if (level.has_leaf_children)
-      for (const auto &own : finer.own)
-        rows.emplace_back(own.node, own.leaf.number());
-    else
-      for (unsigned int node = 0; node < finer.n_nodes(); ++node)
-        rows.emplace_back(node, node);
-    level.child_weights =
-      finer.parent_weights.transposed(level.n_local_nodes(), rows);
+    const auto transpose = [&](auto &children, const auto &rows) {
+      children = transposed(finer.parent_weights, level.n_local_nodes(), rows);
+      for (unsigned int node = level.n_nodes(); node < level.n_local_nodes();
+           ++node)
+        if (children.begin(node) != children.end(node))
+          level.transferred.push_back(node);
+    };
 
-    for (unsigned int node = level.n_nodes(); node < level.n_local_nodes();
-         ++node)
-      if (level.child_weights.begin(node) != level.child_weights.end(node))
-        level.transferred.push_back(node);
+    // Rows of the parents' weights, and their numbers as children.
+    if (k + 2 == levels.size())
+      {
+        std::vector<std::pair<unsigned int, LeafNode>> rows;
+        for (const auto &own : finer.own)
+          rows.emplace_back(own.node, own.leaf);
+        transpose(level.leaf_child_weights, rows);
+      }
+    else
+      {
+        std::vector<std::pair<unsigned int, unsigned int>> rows;
+        for (unsigned int node = 0; node < finer.n_nodes(); ++node)
+          rows.emplace_back(node, node);
+        transpose(level.child_weights, rows);
+      }
   }
 
 
@@ -616,7 +624,8 @@ namespace Friction
             }
         if (k + 1 < levels.size())
           {
-            const NodeWeights &parents = levels[k + 1].parent_weights;
+            const NodeWeights<unsigned int> &parents =
+              levels[k + 1].parent_weights;
             for (unsigned int node = 0; node < levels[k + 1].n_nodes(); ++node)
               if (parents.end(node) == parents.begin(node) + 1)
                 {
@@ -666,6 +675,7 @@ namespace Friction
         level.edge.capacity() + level.flags.capacity() +
         level.parent_weights.memory_consumption() +
         level.child_weights.memory_consumption() +
+        level.leaf_child_weights.memory_consumption() +
         level.nodes.memory_consumption();
     return bytes;
   }

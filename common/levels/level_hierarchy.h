@@ -109,7 +109,7 @@ namespace Friction
 
       /** The weights of the next coarser nodes in the value at each node; known
        * for owned nodes and for ghosts that something couples to. */
-      const NodeWeights &
+      const NodeWeights<unsigned int> &
       parents() const
       {
         return parent_weights;
@@ -118,20 +118,27 @@ namespace Friction
       /** The transpose: which owned nodes of the next finer level each node,
        * ghosts included, has a share in. Not if that level is the finest, which
        * has no unknowns of its own. */
-      const NodeWeights &
+      const NodeWeights<unsigned int> &
       children() const
       {
-        Assert(!has_leaf_children, dealii::ExcInvalidState());
+        Assert(!has_leaf_children(), dealii::ExcInvalidState());
         return child_weights;
       }
 
-      /** If the next finer level is the finest: the same, but with numbers of
-       * leaf nodes. */
-      const NodeWeights &
+      /** Whether the next finer level is the finest. */
+      bool
+      has_leaf_children() const
+      {
+        return leaf_child_weights.n_rows() > 0;
+      }
+
+      /** If it is: the same for the leaf nodes of that level, of which those
+       * that this process owns and that do not hang have parents. */
+      const NodeWeights<LeafNode> &
       leaf_children() const
       {
-        Assert(has_leaf_children, dealii::ExcInvalidState());
-        return child_weights;
+        Assert(has_leaf_children(), dealii::ExcInvalidState());
+        return leaf_child_weights;
       }
 
       /**
@@ -219,8 +226,8 @@ namespace Friction
       std::shared_ptr<const Utilities::MPI::Partitioner> layout;
       std::vector<LeafNode>                              leaf_nodes;
       std::vector<OwnNode>                               own;
-      bool                               has_leaf_children = false;
-      NodeWeights                        parent_weights, child_weights;
+      NodeWeights<unsigned int>          parent_weights, child_weights;
+      NodeWeights<LeafNode>              leaf_child_weights;
       NodeRanges                         relaxed;
       std::vector<char>                  edge;
       std::vector<unsigned char>         flags;

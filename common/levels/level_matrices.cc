@@ -180,6 +180,7 @@ namespace Friction
             received_rows.push_back(rows[r].row);
           }
       }
+    const WaitingScope waiting(nodes.communicator());
     MPI_Waitall(requests.size(), requests.data(), MPI_STATUSES_IGNORE);
     return received_rows;
   }
@@ -277,7 +278,7 @@ namespace Friction
                child != level.leaf_children().end(row);
                ++child)
             {
-              const unsigned int i = child->node;
+              const unsigned int i = child->node.number();
               for (std::size_t e = leaf_matrix.row_begin(i);
                    e < leaf_matrix.row_end(i);
                    ++e)
@@ -294,7 +295,8 @@ namespace Friction
                 }
             }
 
-        const NodeWeights &parents = hierarchy.level(k + 1).parents();
+        const NodeWeights<unsigned int> &parents =
+          hierarchy.level(k + 1).parents();
         for (unsigned int slot = 0; slot < finer_columns.size(); ++slot)
           for (auto p = parents.begin(finer_columns[slot]);
                p != parents.end(finer_columns[slot]);

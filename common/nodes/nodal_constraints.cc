@@ -109,12 +109,19 @@ namespace Friction
 
   template <int dim>
   void
-  NodalConstraints<dim>::prescribe(const unsigned int node,
-                                   const unsigned int component,
-                                   const double       value)
+  NodalConstraints<dim>::prescribe(const std::vector<unsigned int> &nodes,
+                                   const VectorType                &u)
   {
-    flags[node] |= (1u << component);
-    values.local_element(dim * node + component) = value;
+    for (const unsigned int node : nodes)
+      {
+        Assert(node < n_owned_nodes() && !is_hanging(node),
+               ExcMessage("Only owned nodes that do not hang."));
+        flags[node] |= all_components;
+        for (unsigned int c = 0; c < dim; ++c)
+          values.local_element(dim * node + c) =
+            u.local_element(dim * node + c);
+      }
+    update_ghosts();
   }
 
 

@@ -2,13 +2,13 @@
 #define friction_nodes_nodal_constraints_h
 
 #include <common/parallel/node_distribution.h>
+#include <common/parallel/vector_type.h>
 
 #include <deal.II/base/partitioner.h>
 
 #include <deal.II/dofs/dof_handler.h>
 
 #include <deal.II/lac/affine_constraints.h>
-#include <deal.II/lac/la_parallel_vector.h>
 
 #include <memory>
 #include <vector>
@@ -16,9 +16,6 @@
 namespace Friction
 {
   using namespace dealii;
-
-  /** The vectors of the leaf mesh and of all levels. */
-  using VectorType = LinearAlgebra::distributed::Vector<double>;
 
   /**
    * What is known about each node of the leaf mesh before any contact: is it
@@ -136,19 +133,17 @@ namespace Friction
     void update_values(const AffineConstraints<double> &dirichlet);
 
     /**
-     * Prescribes the present value @p value of a component of an owned node:
-     * this is how the bonded comparison problem is made out of a contact
-     * problem. When all is said, update_ghosts() has to follow.
+     * Prescribes all components of some more nodes, to have the values that
+     * they have in @p u: this is how the bonded comparison problem is made out
+     * of a contact problem. Collective.
+     * @param nodes  owned nodes that do not hang.
      */
-    void prescribe(const unsigned int node,
-                   const unsigned int component,
-                   const double       value);
-
-    /** Has all processes that know a node know what its owner knows of it.
-     * Collective. */
-    void update_ghosts();
+    void prescribe(const std::vector<unsigned int> &nodes, const VectorType &u);
 
   private:
+    // Has all processes that know a node know what its owner knows of it.
+    void update_ghosts();
+
     static constexpr unsigned char hanging_bit    = 0x80;
     static constexpr unsigned char all_components = (1u << dim) - 1;
 

@@ -10,7 +10,12 @@ namespace Friction
   /**
    * A sparse matrix of scalar weights between nodes, in compressed row storage;
    * it acts on each component of the node values alike.
+   *
+   * @tparam Column  what the nodes of its columns are numbered by: unsigned int
+   *                 if these are nodes of a level, LeafNode if they are nodes
+   *                 of the leaf mesh. Rows are nodes of a level.
    */
+  template <typename Column>
   class NodeWeights
   {
   public:
@@ -18,8 +23,8 @@ namespace Friction
      * digits are plenty. */
     struct Entry
     {
-      unsigned int node;
-      float        weight;
+      Column node;
+      float  weight;
     };
 
     NodeWeights() = default;
@@ -27,14 +32,10 @@ namespace Friction
     /** @param starts  where the entries of each row begin, and the last ones
      *                 end. */
     NodeWeights(std::vector<unsigned int> &&starts,
-                std::vector<Entry>        &&entries);
-
-    /** Rows and columns exchanged, of some of the rows.
-     * @param n_columns  will be the number of rows.
-     * @param rows       which rows, and the numbers that they will have. */
-    NodeWeights transposed(
-      const unsigned int                                        n_columns,
-      const std::vector<std::pair<unsigned int, unsigned int>> &rows) const;
+                std::vector<Entry>        &&entries)
+      : starts(std::move(starts))
+      , entries(std::move(entries))
+    {}
 
     unsigned int
     n_rows() const
@@ -65,6 +66,33 @@ namespace Friction
     std::vector<unsigned int> starts = {0};
     std::vector<Entry>        entries;
   };
+
+
+
+  /** Rows and columns exchanged, of some of the rows.
+   * @param n_columns  will be the number of rows.
+   * @param rows       which rows, and the numbers that they will have as
+   *                   columns. */
+  template <typename Row>
+  NodeWeights<Row>
+  transposed(const NodeWeights<unsigned int>                 &weights,
+             const unsigned int                               n_columns,
+             const std::vector<std::pair<unsigned int, Row>> &rows)
+  {
+    // Counted, then filled: next[c] is where the next entry of row c goes.
+    std::vector<unsigned int> next(n_columns + 1, 0);
+    for (const auto &row : rows)
+      for (auto e = weights.begin(row.first); e != weights.end(row.first); ++e)
+        ++next[e->node + 1];
+    for (unsigned int c = 0; c < n_columns; ++c)
+      next[c + 1] += next[c];
+    std::vector<unsigned int>                     starts = next;
+    std::vector<typename NodeWeights<Row>::Entry> entries(next[n_columns]);
+    for (const auto &row : rows)
+      for (auto e = weights.begin(row.first); e != weights.end(row.first); ++e)
+        entries[next[e->node]++] = {row.second, e->weight};
+    return {std::move(starts), std::move(entries)};
+  }
 } // namespace Friction
 
 #endif

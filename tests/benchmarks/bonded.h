@@ -15,14 +15,12 @@ namespace Benchmark
        const VectorType           &u,
        const ContactState         &state)
   {
-    NodalConstraints<dim> bonded = problem.constraints;
+    std::vector<unsigned int> nodes;
     for (unsigned int p = 0; p < problem.contact.size(); ++p)
       if (state.in_contact(p))
-        for (unsigned int d = 0; d < dim; ++d)
-          bonded.prescribe(problem.contact[p].node,
-                           d,
-                           u.local_element(dim * problem.contact[p].node + d));
-    bonded.update_ghosts();
+        nodes.push_back(problem.contact[p].node);
+    NodalConstraints<dim> bonded = problem.constraints;
+    bonded.prescribe(nodes, u);
     return bonded;
   }
 } // namespace Benchmark

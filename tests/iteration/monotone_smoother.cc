@@ -97,11 +97,12 @@ namespace
       {
         if (problem.constraints().is_fixed(i))
           continue;
+        std::vector<unsigned int> others;
+        for (unsigned int j = 0; j < problem.constraints().n_nodes(); ++j)
+          if (j != i && !problem.constraints().is_hanging(j))
+            others.push_back(j);
         NodalConstraints<dim> held = problem.constraints();
-        for (unsigned int j = 0; j < held.n_nodes(); ++j)
-          if (j != i && !held.is_hanging(j))
-            for (unsigned int d = 0; d < dim; ++d)
-              held.prescribe(j, d, u.local_element(dim * j + d));
+        held.prescribe(others, u);
         const ContactBoundary<dim> contact(
           d.mapping(), d.dof_handler(), d.hanging_nodes(), held, problem.scene);
         const DiscreteProblem<dim> of_node = {disc.stiffness,

@@ -84,17 +84,25 @@ namespace
             restricted = 0.;
             transfer.restrict_and_add(k, restricted, fine_vector);
           }
-        const NodeWeights &children =
-          finer_last ? coarse.leaf_children() : coarse.children();
-        const auto number = [&](const unsigned int child) {
-          return finer_last ? fine_node[child] : child;
-        };
+        using Weights = std::vector<std::pair<unsigned int, float>>;
+        std::vector<Weights> children(coarse.n_nodes());
+        for (unsigned int i = 0; i < coarse.n_nodes(); ++i)
+          if (finer_last)
+            for (auto c = coarse.leaf_children().begin(i);
+                 c != coarse.leaf_children().end(i);
+                 ++c)
+              children[i].emplace_back(fine_node[c->node.number()], c->weight);
+          else
+            for (auto c = coarse.children().begin(i);
+                 c != coarse.children().end(i);
+                 ++c)
+              children[i].emplace_back(c->node, c->weight);
         for (unsigned int i = 0; i < coarse.n_nodes(); ++i)
           for (unsigned int d = 0; d < dim; ++d)
             {
               double value = 0;
-              for (auto c = children.begin(i); c != children.end(i); ++c)
-                value += c->weight * fine_vector(dim * number(c->node) + d);
+              for (const auto &c : children[i])
+                value += c.second * fine_vector(dim * c.first + d);
               difference =
                 std::max(difference, std::abs(value - restricted(dim * i + d)));
             }
@@ -113,8 +121,8 @@ namespace
                ++p)
             weights.emplace(i, p->node, p->weight);
         for (unsigned int i = 0; i < coarse.n_nodes(); ++i)
-          for (auto c = children.begin(i); c != children.end(i); ++c)
-            asymmetry += 1 - weights.erase({number(c->node), i, c->weight});
+          for (const auto &c : children[i])
+            asymmetry += 1 - weights.erase({c.first, i, c.second});
         asymmetry += weights.size();
       }
     check_below(difference, 1e-14, "prolongation and restriction of deal.II");
