@@ -32,6 +32,15 @@ namespace Friction
   /**
    * Where the wall time of a run goes on this process.
    *
+   * Three accounts of time answer three questions. This one: what does the user
+   * wait for, from the start of the program to its end, whatever level it is
+   * on? CostAccount: what does one discrete problem cost, by the phases of its
+   * solution, in seconds and in messages, the time spent waiting for other
+   * processes among them? Its seconds are a part of RunPart::solution and
+   * RunPart::levels here. And LevelRecord::setup_seconds and solve_seconds,
+   * which are read off a deal.II Timer: how long did one level take? They are
+   * numbers of the results, which a program without either account has, too.
+   *
    * The clock is attached to a communicator, as CostAccount is, and to all that
    * are duplicated from it afterwards; RunScope finds it there, as long as the
    * clock exists. A program without a clock, a test for example, does without.

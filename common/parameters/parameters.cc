@@ -794,8 +794,8 @@ namespace Friction
 
 
 
-    // How one may touch it. The coefficient of the first section is read before
-    // all else.
+    // How a body may touch an obstacle. The coefficient of the first section is
+    // read before all else.
     void
     read_contact(const std::string   &section,
                  Values              &values,
@@ -925,19 +925,6 @@ namespace Friction
       return warnings;
     }
 
-
-
-    // The less a material can be compressed, the worse sweeps and coarse
-    // corrections reduce displacements that hardly change volumes. Sweeps that
-    // follow each other through the cache are the cheapest remedy; see
-    // doc/benchmark/incompressible.txt. Three of them up to a Poisson ratio of
-    // 0.45, where the ratio of the two moduli is nine.
-    unsigned int
-    enough_sweeps(const Material &material)
-    {
-      const double ratio = material.lambda() / material.mu();
-      return std::lround(std::min(20., std::max(3., ratio / 3.)));
-    }
   } // namespace
 
 
@@ -1195,9 +1182,9 @@ namespace Friction
         (values.get("Solver/Local solver") == "secular equation"
            ? LocalSolver::secular_equation
            : LocalSolver::uzawa);
-      unsigned int sweeps = enough_sweeps(parameters.material);
+      unsigned int sweeps = enough_smoothing_steps(parameters.material);
       for (const auto &region : parameters.regions)
-        sweeps = std::max(sweeps, enough_sweeps(region.material));
+        sweeps = std::max(sweeps, enough_smoothing_steps(region.material));
       solver.smoothing_steps = values.steps("Solver/Smoothing steps", sweeps);
       solver.coarse_smoothing_steps =
         values.steps("Solver/Coarse smoothing steps", std::max(6u, sweeps));

@@ -38,7 +38,7 @@ namespace Friction
      * @param where the beginning of the sentence if one of them cannot be
      *   understood, which is an InputError
      * @param has_time whether definitions, and expressions with coordinates,
-     * may use the time t
+     *   may use the time t
      */
     Expressions(
       const std::map<std::string, double>                    &constants,

@@ -1,6 +1,8 @@
 #ifndef friction_parameters_solver_settings_h
 #define friction_parameters_solver_settings_h
 
+#include <common/parameters/material.h>
+
 namespace Friction
 {
   /**
@@ -131,6 +133,10 @@ namespace Friction
     /// SafeguardedSolver.
     bool safeguards = true;
   };
+
+  /** How many smoothing steps a body of this material needs, which is what
+   * `automatic` means. */
+  unsigned int enough_smoothing_steps(const Material &material);
 } // namespace Friction
 
 #endif

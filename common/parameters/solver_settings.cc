@@ -1,0 +1,19 @@
+#include <common/parameters/solver_settings.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Friction
+{
+  // The less a material can be compressed, the worse sweeps and coarse
+  // corrections reduce displacements that hardly change volumes. Sweeps that
+  // follow each other through the cache are the cheapest remedy; see
+  // doc/benchmark/incompressible.txt. Three of them up to a Poisson ratio of
+  // 0.45, where the ratio of the two moduli is nine.
+  unsigned int
+  enough_smoothing_steps(const Material &material)
+  {
+    const double ratio = material.lambda() / material.mu();
+    return std::lround(std::min(20., std::max(3., ratio / 3.)));
+  }
+} // namespace Friction
