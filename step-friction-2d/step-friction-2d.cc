@@ -208,7 +208,7 @@ namespace StepFriction2d
   // unknowns: by biorthogonality (6.9) the coefficients of the boundary stress
   // are nodal forces.
   //
-  // What remains to be said is the bilinear form. It is that of linear
+  // What remains to be said is the bilinear form. It is that of step-8, linear
   // elasticity, for friction and contact do not appear in the stiffness matrix:
   // they only restrict what the solution may do at the nodes of the contact
   // boundary. It is $a(u,v)=\int \lambda\, \mathrm{div}\,u\,\mathrm{div}\,v +
@@ -303,13 +303,14 @@ namespace StepFriction2d
     const TrescaFunctional<dim> functional(problem);
 
     // <i>Part 2: the leading relaxation.</i> This is where the friction cone
-    // is, and nowhere else: <code>MonotoneSmoother::relax_contact_node()</code>
-    // gives a node the displacement that minimises the energy with all other
-    // nodes held, (6.15), and at its heart is
-    // <code>LocalProblem::solve()</code>. Right after its turn a node satisfies
-    // its law, with this $\tau(p)$, exactly, and violates it again as soon as a
-    // neighbour moves. With Algorithm 3 $\tau(p)$ is that of (6.19); with
-    // Algorithm 2 it is fixed.
+    // is, and in this iteration nowhere else; Newton's method for Coulomb's
+    // law, one of the safeguards, has <code>SemismoothLaw</code> in its place.
+    // <code>MonotoneSmoother::relax_contact_node()</code> gives a node the
+    // displacement that minimises the energy with all other nodes held, (6.15),
+    // and at its heart is <code>LocalProblem::solve()</code>. Right after its
+    // turn a node satisfies its law, with this $\tau(p)$, exactly, and violates
+    // it again as soon as a neighbour moves. With Algorithm 3 $\tau(p)$ is that
+    // of (6.19); with Algorithm 2 it is fixed.
     const MonotoneSmoother<dim> smoother(problem, settings.local_solver);
 
     // <i>Part 3: phases, truncation, linearisation.</i> The phase of a node
@@ -404,8 +405,8 @@ namespace StepFriction2d
   // loses nothing.
   //
   // The estimator knows where the error in the energy norm comes from. For the
-  // contact stresses themselves one may want a contact zone that is resolved
-  // equally well all over, as in table 6.1 of the thesis:
+  // contact stresses themselves a scene may want a contact zone that is
+  // resolved equally well all over, as in table 6.1 of the thesis:
   // <code>Refinement/Contact zone</code>.
   template <int dim>
   bool
@@ -550,9 +551,9 @@ namespace StepFriction2d
         // This is the moment for a checkpoint, if the scene wants any: a mesh
         // and two vectors on it are all that the next level needs of those
         // before, and in a history what the load step before has come to, and
-        // where the platens are if there are any. With
-        // what has been recorded so far, a run continued with
-        // <code>--restart</code> ends with the same files as any other.
+        // where the platens are if there are any. With what has been recorded
+        // so far, a run continued with <code>--restart</code> ends with the
+        // same files as any other.
         output.save_checkpoint(level + 1,
                                discretization,
                                load_steps.checkpoint_vectors(

@@ -43,11 +43,10 @@ namespace StepFriction3d
   // that of the obstacle, or, with <code>Contact/Contact normal = body</code>,
   // that of the manifold which has put the vertex there: on the mantle of a
   // cylinder it is exactly radial. The two tangents may be turned in their
-  // plane at will, since
-  // $|u_T|$ is the same in any frame. Where one of them is prescribed it comes
-  // last, and <code>n_free_tangents</code> counts the others. A node that hangs
-  // on the contact boundary has no law of its own: it follows its masters, and
-  // hands its measure and its force on to them.
+  // plane at will, since $|u_T|$ is the same in any frame. Where one of them is
+  // prescribed it comes last, and <code>n_free_tangents</code> counts the
+  // others. A node that hangs on the contact boundary has no law of its own: it
+  // follows its masters, and hands its measure and its force on to them.
   void
   begin(NestedIteration<3> &nest, RunOutput<3> &output, const Start start)
   {

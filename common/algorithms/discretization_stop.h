@@ -42,10 +42,10 @@ namespace Friction
 
     /** Is told of a mesh that has been solved: all of them, in their order.
      * @param error_of_level  an energy norm, ErrorEstimate::lower_bound; zero
-     * if it is not known.
-     * @param n_dofs           number of unknowns.
-     * @param contraction      of the increments per cycle; zero if there was
-     *                         but one. */
+     *                        if it is not known.
+     * @param n_dofs          number of unknowns.
+     * @param contraction     of the increments per cycle; zero if there was but
+     *                        one. */
     void add_level(const double                          error_of_level,
                    const dealii::types::global_dof_index n_dofs,
                    const double                          contraction);

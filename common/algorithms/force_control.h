@@ -72,7 +72,8 @@ namespace Friction
      *                    relative increments of its argument; zero: as well as
      *                    the caller wants the solution.
      * @return the report of the last solution, with the cycles of all. If it
-     * has not converged, platens, u and state are those of that attempt.
+     *         has not converged, platens, u and state are those of that
+     *         attempt.
      *
      * Throws InputError if sixty positions are not enough, if a platen would
      * have to be moved farther than the body is large, or if a part of it is

@@ -16,7 +16,7 @@ namespace Friction
    * nowhere, by what may succeed:
    *
    * 1. the algorithm of the settings, by default Algorithm 3. With much
-   * friction it has to show soon that it gets somewhere;
+   *    friction it has to show soon that it gets somewhere;
    * 2. the same with AlgebraicCorrection, where there is not much friction:
    *    then coarse levels are the trouble, for example because cells are short
    *    in two of three directions;
@@ -47,7 +47,7 @@ namespace Friction
   public:
     /**
      * @param problem    whose coefficient of friction continuation changes
-     * while it lasts.
+     *                   while it lasts.
      * @param levels     of the same problem, for corrections.
      * @param iteration  the step to begin with. Other attempts exchange one or
      *                   two of its parts and share all others.

@@ -196,8 +196,8 @@ namespace Friction
 
 
 
-  // The positive root ell of  2 kappa ell e^T a e + ell^2 |a e|^2 = |b|^2 -
-  // kappa^2.
+  // The positive root ell of  2 kappa ell e^T a e + ell^2 |a e|^2 = excess,
+  // where the excess is |b|^2 - kappa^2.
   inline double
   SlipProblem<2>::amount_of_slip(const double e_1,
                                  const double e_2,

@@ -85,7 +85,7 @@ namespace Friction
     /**
      * Computes the eigenbasis.
      * @param block              $a$, column by column; of the off-diagonal
-     * entries only the first one is used.
+     *                           entries only the first one is used.
      * @param n_free_components  the first ones are free, the others are
      *                           prescribed.
      * @param solver             how the problem with two free components is
@@ -131,7 +131,7 @@ namespace Friction
      * problem is solved by the secular equation.
      *
      * @param n_iterations  if given, where to put the number of steps; more
-     * than maximum_uzawa_steps if that was not enough.
+     *                      than maximum_uzawa_steps if that was not enough.
      */
     std::array<double, 2>
     solve_uzawa(const std::array<double, 2> &b,

@@ -68,10 +68,10 @@ namespace Friction
 
   /**
    * The nodes of $\Gamma_S$ that can get into contact, on all parts of the
-   * boundary that the scene says so of. Hanging nodes follow
-   * their masters and carry nothing of their own; their share of the boundary
-   * measure goes to the masters. Nodes that are entirely prescribed, and nodes
-   * whose normal never meets the obstacle, are left out.
+   * boundary that the scene says so of. Hanging nodes follow their masters and
+   * carry nothing of their own; their share of the boundary measure goes to the
+   * masters. Nodes that are entirely prescribed, and nodes whose normal never
+   * meets the obstacle, are left out.
    *
    * Each process has the contact nodes that it owns.
    */

@@ -59,7 +59,7 @@ namespace Friction
    *   discretization.set_up();
    *   discretization.assemble(elasticity<dim>(scene.materials()));
    *
-   *   VectorType         u(discretization.constraints().partitioner());
+   *   VectorType         u = discretization.vector();
    *   VectorType         no_tractions(u);
    *   ContactState       state = make_initial_guess(discretization, u,
    *                                                 no_tractions);

@@ -124,11 +124,12 @@ namespace Friction
     const unsigned int        n_stages  = n_sweeps + (with_residual ? 1 : 0);
     std::vector<unsigned int> done(n_stages, 0);
 
-    // Counted in the direction of the sweep, chunk number c is
+    // The number of the chunk that is c-th in the direction of the sweep.
     const auto chunk_at = [&](const unsigned int c) {
       return backwards ? n - 1 - c : c;
     };
-    // and all of the stage before must be done up to and including
+    // The last chunk, counted in this way, that the stage before must be
+    // through with when a stage begins with its chunk c.
     const auto needs = [&](const unsigned int c) {
       return backwards ? n - 1 - reach_down[n - 1 - c] : reach_up[c];
     };

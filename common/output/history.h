@@ -296,7 +296,7 @@ namespace Friction
   public:
     /**
      * @param file_name  where the file goes, say
-     * `run_directory.file("history.h5")`.
+     *                   `run_directory.file("history.h5")`.
      * @param description  what else is in it.
      * @param communicator  of all processes that call add_level().
      */

@@ -41,7 +41,7 @@ namespace Friction
    * - `prescribed`: node and component that are prescribed;
    * - `prescribed_values`: their displacements (length);
    * - `body_force`: dim components (stress/length) at the $2^{dim}$ Gauss
-   * points of order two of each cell;
+   *   points of order two of each cell;
    * - `traction_faces`: faces with a given traction, as in `boundary_faces`;
    * - `tractions`: dim components (stress) at the $4^{dim-1}$ Gauss points of
    *   order four of each of these faces;
@@ -85,7 +85,7 @@ namespace Friction
      *
      * @param displacement  with ghosts and hanging nodes.
      * @param own_contact   records of the contact nodes that the calling
-     * process owns.
+     *                      process owns.
      */
     void write_level(const unsigned int                     level,
                      const Discretization<dim>             &discretization,

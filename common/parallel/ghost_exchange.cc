@@ -10,7 +10,7 @@ namespace Friction
   namespace
   {
     // Messages between the same two processes keep their order, so that one tag
-    // is enough on a communicator of one's own.
+    // is enough on a communicator that only the discrete problem uses.
     constexpr int tag = 4711;
   } // namespace
 

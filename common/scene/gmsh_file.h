@@ -14,9 +14,9 @@ namespace Friction
 {
   /**
    * What stands in a file of Gmsh's, formats 2.2 and 4.1, as text or binary, or
-   * in one of version 1, which deal.II writes:
-   * nodes, elements, physical ids and their names. It is read as it is; what
-   * makes a mesh of it, and whether it is a good one, is MeshFile's business.
+   * in one of version 1, which deal.II writes: nodes, elements, physical ids
+   * and their names. It is read as it is; what makes a mesh of it, and whether
+   * it is a good one, is MeshFile's business.
    *
    * We do not use deal.II's reader, which knows neither binary files nor names,
    * and gives up on much that Gmsh writes by default, interior curves for

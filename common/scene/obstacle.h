@@ -194,8 +194,9 @@ namespace Friction
      * obstacle; from inside, the one that led there. Beyond the end of a rod,
      * to where it would be if it were longer.
      * @param outward  if given, the normal of a body in @p p: only those parts
-     * of the obstacle count that it faces, and not those to which the way leads
-     *   through the body. Zero if there is none.
+     *                 of the obstacle count that it faces, and not those to
+     *                 which the way leads through the body. Zero if there is
+     *                 none.
      */
     Tensor<1, dim>
     normal(const Point<dim>     &p,

@@ -578,9 +578,8 @@ namespace Friction
     // The mesh is made in a triangulation that lives on one processor, since
     // vertices can be moved freely there, and is then copied. Each process
     // makes its own; a mesh file that one of them cannot read is an error of
-    // all.
-    // The copy at the end takes over this mesh's policy of refinement as well,
-    // which therefore has to be the one that the given triangulation has.
+    // all. The copy at the end takes over this mesh's policy of refinement as
+    // well, which therefore has to be the one that the given triangulation has.
     if (parameters.scene.geometry == GeometryKind::rectangle)
       {
         double n_cells = 1.;

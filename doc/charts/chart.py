@@ -198,7 +198,7 @@ def axes_below(figure, top, titles=0.0):
 
 
 def times(ratio):
-    """A factor as one would say it."""
+    """A factor as a reader would say it."""
     return f"{ratio:.1f}" if ratio < 9.95 else f"{ratio:.0f}"
 
 

@@ -62,7 +62,7 @@ def draw(data, output, name, subject):
     for family in ("algorithm 3", "newton"):
         if not any(solver.startswith(family) for solver in lines):
             raise DataError(f"{table.path}: nothing of {family}.")
-    # Where the first guess is as good as the mesh already, one would stop at a
+    # Where the first guess is as good as the mesh already, a user would stop at a
     # tenth, which is what the option of the solver does.
     start = max(errors[0] for _, errors in lines.values())
     target, goal_name = goal, "the discretisation error"

@@ -1,8 +1,8 @@
 // Round bodies against a direct solution of the discrete law on the same mesh,
 // with normals and gaps from closed forms: two cylinders on rods, parallel to
 // them and across, and the half ball. Then what is known of the cylinders on
-// finer meshes: mirror symmetry, balance of forces, and cycles that
-// do not grow.
+// finer meshes: mirror symmetry, balance of forces, and cycles that do not
+// grow.
 
 #include <common/algorithms/nested_iteration.h>
 

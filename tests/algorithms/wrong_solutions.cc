@@ -2,8 +2,7 @@
 // hanging nodes, in three dimensions on the contact boundary, too, a problem is
 // solved, and then
 // - a single value of the displacement is moved by 1e-4 of the indentation:
-// each
-//   of those of the contact boundary and some of the others,
+//   each of those of the contact boundary and some of the others,
 // - the stick of each single node that bears clearly less friction than it can
 //   is dropped,
 // - the bounds of friction are those that the level before has found.

@@ -3,12 +3,10 @@
 // boundary, and the two are compared vertex by vertex:
 //
 // - contact nodes with normals, gaps and measures, and the rows of the
-// stiffness
-//   matrix;
+//   stiffness matrix;
 // - the matrices of all levels, with random projectors and second derivatives
-// at
-//   contact nodes, after a fresh assembly and after updates; updates must agree
-//   with fresh assemblies to the last bit on several processes, too;
+//   at contact nodes, after a fresh assembly and after updates; updates must
+//   agree with fresh assemblies to the last bit on several processes, too;
 // - the solution, with the same phases, certificate and energy.
 //
 // Sweeps and cycles are not the same, since each process relaxes its own nodes
