@@ -351,8 +351,8 @@ namespace StepFriction2d
     // small certificate <code>report.converged</code> is false.
     //
     // Should the iteration get nowhere, which much friction or very long cells
-    // can bring about, <code>SafeguardedSolver</code> exchanges parts 5 and 4,
-    // and then Algorithm 3 for others; levels and their matrices stay. What
+    // can bring about, <code>SafeguardedSolver</code> exchanges parts 3 to
+    // 5, and then Algorithm 3 for others; levels and their matrices stay. What
     // it had to do, the console says; in most scenes it is nothing.
     SafeguardedSolver<dim> solver(problem, levels, iteration, settings);
     setup_seconds = discretization.setup_seconds() + timer.wall_time();

@@ -32,8 +32,8 @@ namespace Friction
    * Linear problems are solved no more accurately than the step deserves
    * (Eisenstat and Walker 1996). There is no energy that would decrease. What
    * decides over the length of a step is the violation of the law, the
-   * Euclidean norm of all nodal forces that are wrong; steps are halved until
-   * it decreases.
+   * Euclidean norm of all nodal forces that are wrong; steps after the first
+   * are halved until it decreases, six times at most.
    */
   template <int dim>
   class NewtonSolver

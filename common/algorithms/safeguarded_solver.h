@@ -37,8 +37,8 @@ namespace Friction
    * it is, by SolverReport::converged.
    *
    * All attempts together take SolverSettings::total_cycles cycles at most, and
-   * each of them half of those that are left and the last one all, so that a
-   * problem without hope comes to an end. Without Coulomb's friction the
+   * each of them half of those that are left, continuation and the last one
+   * all, so that a problem without hope comes to an end. Without Coulomb's friction the
    * problem is convex, and 4 and 6 are left out.
    */
   template <int dim>
@@ -49,8 +49,8 @@ namespace Friction
      * @param problem    whose coefficient of friction continuation changes
      *                   while it lasts.
      * @param levels     of the same problem, for corrections.
-     * @param iteration  the step to begin with. Other attempts exchange one or
-     *                   two of its parts and share all others.
+     * @param iteration  the step to begin with. Other attempts exchange
+     *                   some of its parts and share all others.
      * @param settings   that the parts of the iteration have been made with.
      *
      * References are kept.

@@ -44,7 +44,8 @@ namespace Friction
       return contact[p];
     }
 
-    /** The tangential displacement is held at zero by friction. */
+    /** The slip, what the tangential displacement has changed by since the end
+     * of the last load step, is held at zero by friction. */
     bool
     sticks(const unsigned int p) const
     {

@@ -23,11 +23,11 @@ namespace Friction
    * </table>
    * With TruncationVariant::contact nothing is free at any node in contact.
    *
-   * In two dimensions $\omega''=0$, since $|u_T|$ is piecewise linear. In three
-   * the boundary of the friction cone is curved: turning the direction of slip
-   * costs energy, and
-   * @f[ \omega''_p = \frac{F\tau(p)}{|u_T|}
-   *     \left(I - \frac{u_T u_T^T}{|u_T|^2}\right) @f]
+   * In two dimensions $\omega''=0$, since the length of the slip $z$ is
+   * piecewise linear. In three the boundary of the friction cone is curved:
+   * turning the direction of slip costs energy, and
+   * @f[ \omega''_p = \frac{F\tau(p)}{|z|}
+   *     \left(I - \frac{z z^T}{|z|^2}\right) @f]
    * is a matrix of rank one, whose only direction is the tangent perpendicular
    * to the slip. It grows without bound as the slip goes to zero and is cut off
    * where it exceeds the stiffness of the node, the mean diagonal entry of its
