@@ -38,8 +38,8 @@ namespace Friction
    *
    * All attempts together take SolverSettings::total_cycles cycles at most, and
    * each of them half of those that are left, continuation and the last one
-   * all, so that a problem without hope comes to an end. Without Coulomb's friction the
-   * problem is convex, and 4 and 6 are left out.
+   * all, so that a problem without hope comes to an end. Without Coulomb's
+   * friction the problem is convex, and 4 and 6 are left out.
    */
   template <int dim>
   class SafeguardedSolver
