@@ -330,10 +330,9 @@ namespace Friction
                                       const NodeBlockMatrix<dim>  &leaf_matrix,
                                       const unsigned int           k)
   {
-    Level     &level      = levels[k];
-    const bool has_finer  = (k + 1 < levels.size());
-    const bool finer_last = (k + 2 == levels.size());
-    const auto n_owned    = level.n_nodes();
+    Level     &level     = levels[k];
+    const bool has_finer = (k + 1 < levels.size());
+    const auto n_owned   = level.n_nodes();
 
     level.leaf_nodes.assign(level.n_local_nodes(), LeafNode());
     for (unsigned int i = 0; i < constraints.n_owned_nodes(); ++i)
@@ -380,25 +379,24 @@ namespace Friction
         if (has_finer)
           {
             finer_columns.begin_row();
+            for (auto child = level.leaf_child_weights.begin(row);
+                 child != level.leaf_child_weights.end(row);
+                 ++child)
+              for (std::size_t e = leaf_matrix.row_begin(child->node.number());
+                   e < leaf_matrix.row_end(child->node.number());
+                   ++e)
+                if (finest_levels[leaf_matrix.column(e)] == k + 1)
+                  finer_columns.add(finest_nodes[leaf_matrix.column(e)]);
             for (auto child = level.child_weights.begin(row);
                  child != level.child_weights.end(row);
                  ++child)
-              if (finer_last)
-                {
-                  for (std::size_t e = leaf_matrix.row_begin(child->node);
-                       e < leaf_matrix.row_end(child->node);
-                       ++e)
-                    if (finest_levels[leaf_matrix.column(e)] == k + 1)
-                      finer_columns.add(finest_nodes[leaf_matrix.column(e)]);
-                }
-              else
-                {
-                  const NodePattern &finer = *levels[k + 1].owned_pattern;
-                  for (std::size_t e = finer.starts[child->node];
-                       e < finer.starts[child->node + 1];
-                       ++e)
-                    finer_columns.add(finer.columns[e]);
-                }
+              {
+                const NodePattern &finer = *levels[k + 1].owned_pattern;
+                for (std::size_t e = finer.starts[child->node];
+                     e < finer.starts[child->node + 1];
+                     ++e)
+                  finer_columns.add(finer.columns[e]);
+              }
             const NodeWeights<unsigned int> &parents =
               levels[k + 1].parent_weights;
             for (const unsigned int node : finer_columns.columns)
