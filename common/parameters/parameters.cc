@@ -186,6 +186,15 @@ namespace Friction
         declare_parameters(prm);
       }
 
+      // What is set from now on comes from another source, a file or the
+      // command line, and has the last word. Within one source an entry is set
+      // once.
+      void
+      begin_source()
+      {
+        set_by_source.clear();
+      }
+
       void
       set(const std::string &path,
           const std::string &value,
@@ -200,6 +209,10 @@ namespace Friction
             throw InputError(where + ": there is no entry '" + excerpt(path) +
                              "'; did you mean '" + nearest(path, known) + "'?");
           }
+        if (!set_by_source.insert(path).second)
+          throw InputError(where + ": '" + path +
+                           "' has been set already, by " + origin[path] +
+                           "; remove one of them.");
         if (!entry->pattern->match(value))
           throw InputError(where + ": '" + excerpt(value) +
                            "' is no value for '" + path + "'; give " +
@@ -315,6 +328,7 @@ namespace Friction
     private:
       ParameterHandler                   prm;
       std::map<std::string, std::string> origin;
+      std::set<std::string>              set_by_source;
       std::set<unsigned int>             further;
     };
 
@@ -1017,6 +1031,7 @@ namespace Friction
   {
     Values values;
     read_file(scene_file, values);
+    values.begin_source();
     for (const std::string &override_text : overrides)
       read_override(override_text, values);
 
