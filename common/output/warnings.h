@@ -33,21 +33,30 @@ namespace Friction
   /** How well what small displacements suppose is true of a solution. */
   struct ContactGeometry
   {
-    /// Over all processes.
-    unsigned int n_contact = 0;
+    /** Of one of the contact boundaries, over all processes. */
+    struct OfBoundary
+    {
+      /// Nodes in contact.
+      unsigned int n_contact = 0;
 
-    /// Where gaps are measured along the normals of the body: the largest angle
-    /// between that of a node in contact and the direction straight to the
-    /// obstacle; degrees.
-    double angle = 0;
+      /// Where gaps are measured along the normals of the body: the largest
+      /// angle between that of a node in contact and the direction straight to
+      /// the obstacle; degrees.
+      double angle = 0;
 
-    /// How far a node in contact is from the obstacle when it is displaced,
-    /// outside or inside; a length.
-    double distance = 0;
+      /// How far a node in contact is from the obstacle when it is displaced,
+      /// outside or inside; a length.
+      double distance = 0;
 
-    /// The largest displacement at the contact boundary, and of all nodes;
-    /// lengths.
-    double contact_displacement = 0, displacement = 0;
+      /// The largest displacement, a length.
+      double displacement = 0;
+    };
+
+    /// In the order of Scene::contact_conditions().
+    std::vector<OfBoundary> boundaries;
+
+    /// The largest displacement of all nodes, a length.
+    double displacement = 0;
 
     /// The diameter of a box around the body, a length.
     double size = 0;
@@ -64,11 +73,12 @@ namespace Friction
   /**
    * About a solution:
    * - no cell has the material of a region;
+   * - displacements are not small against the body;
+   * and, for each of the contact boundaries,
    * - no node is in contact;
    * - normals of the body are used where they are not those of the obstacle, so
    *   that forces do not obey the law of friction;
-   * - displacements are not small against the body, or nodes in contact are not
-   *   where the obstacle is.
+   * - nodes in contact are not where the obstacle is.
    */
   template <int dim>
   std::vector<std::string>
