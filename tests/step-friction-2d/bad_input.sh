@@ -251,6 +251,16 @@ cat stdout stderr | grep -q 'No convergence on level 0.*equilibrium [0-9]' ||
   problem="$problem no certificate"
 verdict 'no convergence of the outer iteration' "$problem"
 
+# All positions that are tried for a force have a budget together.
+run "$block" 'Boundary conditions/Displacement=3: 0, -0.01' \
+  'Boundary conditions/Force=3: 0.01, -0.02' 'Solver/Total cycles=20'
+problem=
+[ $status -eq 1 ] || problem="$problem status $status"
+cat stdout stderr |
+  grep -q 'No convergence on level 0 within [2-4][0-9] cycles' ||
+  problem="$problem more cycles"
+verdict 'a budget for a force that cannot be reached' "$problem"
+
 # Help needs no scene; without any argument it is an error.
 "$program" --help >stdout 2>stderr
 status=$?
