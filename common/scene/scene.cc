@@ -583,14 +583,10 @@ namespace Friction
     // all.
     // The copy at the end takes over this mesh's policy of refinement as well,
     // which therefore has to be the one that the given triangulation has.
-    if (parameters.scene.geometry == GeometryKind::rectangle)
-      {
-        double n_cells = 1.;
-        for (const unsigned int n : parameters.scene.subdivisions)
-          n_cells *= n;
-        check_that_mesh_fits(
-          dim, n_cells, 0, Compatibility::mpi_communicator(triangulation));
-      }
+    check_that_mesh_fits(dim,
+                         n_coarse_cells(parameters.scene),
+                         0,
+                         Compatibility::mpi_communicator(triangulation));
     Triangulation<dim> mesh(triangulation.get_mesh_smoothing());
     on_all_processes(Compatibility::mpi_communicator(triangulation),
                      [&]() { make_serial_mesh(mesh); });

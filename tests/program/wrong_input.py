@@ -602,6 +602,12 @@ CASES = [
      'error', ['degrees of freedom']),
     (11, 'too many cells', 'moved', {'Scene/Subdivisions': '1000000, 100000'}, 'error',
      ['degrees of freedom']),
+    (11, 'too long a cylinder', 'pressed 3d', {
+        'Scene/Geometry': 'cylinder', 'Scene/Length': '1e9', T: '', D: '1: 0, 0, 0'},
+     'error', ["the coarse mesh would have 4e.10 degrees of freedom.*'Scene/Layers'"]),
+    (11, 'too long a half cylinder', 'pressed 3d', {
+        'Scene/Geometry': 'half cylinder', 'Scene/Length': '1e25', T: '',
+        D: '1: 0, 0, 0'}, 'error', ['the coarse mesh would have 6e.27 degrees']),
     (11, 'too deep a mesh', 'pressed 3d', {'Refinement/Levels': '25',
                                            'Refinement/Initial refinements': '15'},
      'error', ['degrees of freedom|refined more than']),
