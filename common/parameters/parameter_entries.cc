@@ -356,7 +356,7 @@ namespace Friction
       {"Refinement",
        "Marking",
        "0.5",
-       make(Patterns::Double(0., 1.)),
+       make(Patterns::Double(1e-300, 1.)),
        "Adaptive: refine cells with at least this fraction of the largest "
        "error indicator."},
       {"Refinement",

@@ -89,7 +89,7 @@ namespace Friction
     wanted(const Patterns::PatternBase &pattern)
     {
       std::string text = pattern.description(Patterns::PatternBase::Text);
-      if (text.find("1e-300") != text.npos)
+      if (text.find("1e-300 <= v <= MAX_DOUBLE") != text.npos)
         return "a positive number";
       // The descriptions begin sentences and name limits that no value meets.
       text[0]            = std::tolower(text[0]);
@@ -101,6 +101,7 @@ namespace Friction
       replace("floating point number", "number");
       replace(" v such that -MAX_DOUBLE <= v <= MAX_DOUBLE", "");
       replace(" <= 2147483647", "");
+      replace("1e-300 <= v", "0 < v");
       return text;
     }
 

@@ -520,6 +520,8 @@ CASES = [
     (7, 'an entry twice, in two sections', 'moved',
      {'Contact/Boundary id': '2\nend\nsubsection Contact\n  set Boundary id = 2'},
      'error', ["'Contact/Boundary id' has been set already, by scene.prm"]),
+    (7, 'marking of everything', 'moved', {'Refinement/Marking': '0'}, 'error',
+     ["'0' is no value for 'Refinement/Marking'; give a number v such that 0 < v <= 1"]),
     (7, 'coefficient without its law', 'moved', {'Contact/Friction law': 'none'},
      'warning', ["'Contact/Friction coefficient' is not used"]),
     (7, 'coefficient in an expression', 'moved',
