@@ -343,11 +343,7 @@ namespace Friction
     if (!nest.report().converged)
       add_failure(nest.level(), nest.report());
     else
-      {
-        if (!nest.is_last())
-          nothing_to_refine(nest.state());
-        check_end(nest.discretization(), nest.displacement(), nest.state());
-      }
+      check_end(nest.discretization(), nest.displacement(), nest.state());
   }
 
 
