@@ -252,7 +252,7 @@ namespace Friction
         // Not string_to_double(), which throws where a number is too small.
         const double value = std::strtod(get(path).c_str(), nullptr);
         if (!(std::abs(value) <= largest_number))
-          throw InputError(subject(path) + " is " + get(path) +
+          throw InputError(subject(path) + " is " + excerpt(get(path)) +
                            ", which is beyond 1e30; choose other units.");
         return value;
       }
@@ -263,7 +263,7 @@ namespace Friction
         const double value = number(path);
         if (!(value >= 1. / largest_number))
           throw InputError(
-            subject(path) + " is " + get(path) + ", but it must " +
+            subject(path) + " is " + excerpt(get(path)) + ", but it must " +
             (value > 0. ? "not be below 1e-30; choose other units."
                         : "be positive."));
         return value;
@@ -494,12 +494,12 @@ namespace Friction
                              "' is not of the form 'name = expression'; "
                              "correct it.");
           if (taken.count(name) > 0)
-            throw InputError(values.subject(path) + ": '" + name +
+            throw InputError(values.subject(path) + ": '" + excerpt(name) +
                              "' is a constant already; choose another name.");
           for (const auto &other : names)
             if (other.first == name)
               throw InputError(values.subject(path) + " says twice what '" +
-                               name + "' is; remove one of them.");
+                               excerpt(name) + "' is; remove one of them.");
           if (name == "x" || name == "y" || name == "z")
             throw InputError(values.subject(path) + ": '" + name +
                              "' is a coordinate; choose another name.");
@@ -969,7 +969,8 @@ namespace Friction
     // definition.
     for (const auto &[name, expression] : definitions)
       {
-        parse_function<3>({expression}, *this, where + " of '" + name + "'");
+        parse_function<3>(
+          {expression}, *this, where + " of '" + excerpt(name) + "'");
         expanded_definitions[name] = expand(expression);
       }
   }
@@ -1140,8 +1141,8 @@ namespace Friction
         }
       else if (!scene.mesh_file.empty())
         throw InputError(values.subject("Scene/Mesh file") + " is '" +
-                         scene.mesh_file + "', but 'Scene/Geometry' is '" +
-                         geometry +
+                         excerpt(scene.mesh_file) +
+                         "', but 'Scene/Geometry' is '" + geometry +
                          "'; set that to 'mesh file', or remove the file.");
       scene.distortion         = values.number("Scene/Distortion");
       scene.rotation_angle     = values.number("Scene/Rotation angle");

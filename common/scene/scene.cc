@@ -73,7 +73,8 @@ namespace Friction
     if (mesh_file != nullptr && !is_number)
       return mesh_file->boundary_id(text, where);
     throw InputError(
-      where + ": '" + text + "' is no boundary id; give a number from 0 on" +
+      where + ": '" + excerpt(text) +
+      "' is no boundary id; give a number from 0 on" +
       (is_number ? "." : ", or the name of a group of a mesh file."));
   }
 
