@@ -296,7 +296,7 @@ namespace Friction
              << nearest.positions[j];
       }
     throw InputError(
-      scene.subject() +
+      scene.subject_at_time() +
       "the forces of 'Boundary conditions/Force' cannot be reached; nearest to "
       "them " +
       text.str() +

@@ -104,8 +104,11 @@ namespace Friction
     /** Says why there is no finer mesh: no cell has any error. */
     void nothing_to_refine(const ContactState &state);
 
-    /** Says why the run ends: this level could not be solved. */
-    void add_failure(const unsigned int level, const SolverReport &report);
+    /** Says why the run ends, also on a silent console: this level could not be
+     * solved, in a history at the present time of the scene. */
+    void add_failure(const unsigned int  level,
+                     const Scene<dim>   &scene,
+                     const SolverReport &report);
 
     /** The same, or if it could be solved, the quantities of the last solution
      * and the warnings that it gives reason for. */

@@ -618,7 +618,11 @@ namespace Friction
       "; prescribe a displacement on one of its boundaries (" +
       list(part.boundary_ids) +
       ") in 'Boundary conditions/Displacement', or of a vertex in 'Boundary "
-      "conditions/Pinned points'.";
+      "conditions/Pinned points'" +
+      (scene.n_load_steps() > 1 && has_contact(scene, part)
+         ? ", or let there be loads that press it against an obstacle at each "
+           "of the 'Load steps/Times'."
+         : ".");
   }
 
 

@@ -509,6 +509,19 @@ namespace Friction
 
 
   template <int dim>
+  std::string
+  Scene<dim>::at_time() const
+  {
+    if (n_load_steps() == 1)
+      return "";
+    std::ostringstream text;
+    text << " at the time t = " << time();
+    return text.str();
+  }
+
+
+
+  template <int dim>
   double
   Scene<dim>::body_size() const
   {
