@@ -142,7 +142,10 @@ namespace Friction
             (text.empty() ? "" : ", ") + dealii::Utilities::trim(component);
         throw InputError(where + ": '" + excerpt(text) +
                          "' cannot be understood; check its syntax and the "
-                         "names in it.");
+                         "names in it" +
+                         (expressions.has_time() && !with_time
+                            ? "; the time t is none of them here."
+                            : "."));
       }
     return function;
   }
