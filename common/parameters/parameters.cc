@@ -159,11 +159,12 @@ namespace Friction
 
 
 
-    // Whether a word is among those of an expression.
-    bool
-    uses_word(const std::string &expression, const std::string &word)
+    // How often a word is among those of an expression.
+    unsigned int
+    n_uses(const std::string &expression, const std::string &word)
     {
-      const auto is_name = [](const unsigned char c) {
+      unsigned int n       = 0;
+      const auto   is_name = [](const unsigned char c) {
         return std::isalnum(c) || c == '_';
       };
       for (std::size_t i = expression.find(word); i != expression.npos;
@@ -171,8 +172,8 @@ namespace Friction
         if ((i == 0 || !is_name(expression[i - 1])) &&
             (i + word.size() == expression.size() ||
              !is_name(expression[i + word.size()])))
-          return true;
-      return false;
+          ++n;
+      return n;
     }
 
 
@@ -296,14 +297,14 @@ namespace Friction
           get(path) != find_entry(path)->default_value;
       }
 
-      // Whether some value uses a word, as expressions do.
-      bool
-      any_uses(const std::string &word)
+      // How often values that have been set use a word, as expressions do.
+      unsigned int
+      n_uses(const std::string &word)
       {
+        unsigned int n = 0;
         for (const auto &[path, where] : origin)
-          if (uses_word(get(path), word))
-            return true;
-        return false;
+          n += Friction::n_uses(get(path), word);
+        return n;
       }
 
       // "where: 'Section/Entry'", the beginning of a sentence.
@@ -676,7 +677,7 @@ namespace Friction
       contact.varying_coefficient  = values.get(name);
       const auto first_use         = std::find_if(
         definitions.begin(), definitions.end(), [](const auto &definition) {
-          return uses_word(definition.second, "F");
+          return n_uses(definition.second, "F") > 0;
         });
       const Expressions before(constants,
                                {definitions.begin(), first_use},
@@ -925,19 +926,69 @@ namespace Friction
           const std::string law = contact + "Friction law";
           only_with(contact + "Friction bound", law, {"Tresca"});
           // Expressions may use the first one as F.
-          if (number > 1 || !values.any_uses("F"))
+          if (number > 1 || values.n_uses("F") == 0)
             only_with(contact + "Friction coefficient", law, {"Coulomb"});
         }
       for (const std::string name : {"Marking", "Contact zone"})
         only_with("Refinement/" + name, "Refinement/Strategy", {"adaptive"});
       if (split(values.get("Load steps/Times"), ',').size() > 1 &&
-          !values.any_uses("t"))
+          values.n_uses("t") == 0)
         warnings.push_back(
           "Warning: " + values.subject("Load steps/Times") +
           " has several times, but nothing in the scene depends on t.");
-      only_with("Output/Format", "Output/Fields", {"true", "yes"});
-      only_with("Output/Principal stresses", "Output/Fields", {"true", "yes"});
+      // Safeguards may come to use the other entries of Algorithm 2, too.
+      const std::vector<std::string> yes = {"true", "yes"};
+      for (const std::string name : {"Outer damping", "Mixed outer iterations"})
+        only_with("Solver/" + name, "Solver/Algorithm", {"fixed point"});
+      if (!values.flag("Solver/Safeguards"))
+        for (const std::string name :
+             {"Outer tolerance", "Maximum outer iterations"})
+          only_with("Solver/" + name, "Solver/Algorithm", {"fixed point"});
+      only_with("Solver/Total cycles", "Solver/Safeguards", yes);
+      only_with("Solver/Recombined steps",
+                "Solver/Coarse correction",
+                {"truncated", "algebraic"});
+      only_with("Output/Format", "Output/Fields", yes);
+      only_with("Output/Principal stresses", "Output/Fields", yes);
+      // Where it is defined it is used once.
+      for (const std::string path : {"Scene/Constants", "Scene/Definitions"})
+        for (const std::string &part : split(values.get(path), ';'))
+          {
+            const std::string name =
+              Utilities::trim(part.substr(0, part.find('=')));
+            if (values.n_uses(name) < 2)
+              warnings.push_back("Warning: " + values.subject(path) +
+                                 " says what '" + excerpt(name) +
+                                 "' is, which nothing uses.");
+          }
       return warnings;
+    }
+
+
+
+    // Friction feels what the body does, and not what the obstacle does.
+    void
+    warn_of_moving_obstacles(Values &values, Parameters &parameters)
+    {
+      const auto warn = [&](const unsigned int          number,
+                            const Parameters::Obstacle &obstacle,
+                            const Parameters::Contact  &contact) {
+        const bool has_friction = contact.friction_law == FrictionLaw::tresca ||
+          (contact.friction_law == FrictionLaw::coulomb &&
+           (contact.friction_coefficient > 0. ||
+            !contact.varying_coefficient.empty()));
+        if (parameters.load_steps.times.size() > 1 && has_friction &&
+            obstacle.kind == ObstacleKind::surface &&
+            n_uses(parameters.expressions.expand(obstacle.function), "t") > 0)
+          parameters.warnings.push_back(
+            "Warning: " +
+            values.subject(section_name("Obstacle", number) + "/Function") +
+            " moves with t, but slip is that of the body: friction takes no "
+            "notice of an obstacle that moves along its own surface.");
+      };
+      warn(1, parameters.obstacle, parameters.contact);
+      for (const auto &further : parameters.further_contacts)
+        warn(further.number, further.obstacle, further.contact);
     }
 
 
@@ -1258,6 +1309,7 @@ namespace Friction
     }
 
     parameters.warnings = unused_entries(values);
+    warn_of_moving_obstacles(values, parameters);
     return parameters;
   }
 
