@@ -210,32 +210,56 @@ namespace Friction
 
 
 
-    // Physical ids have been looked for in the mesh file; what a condition
-    // holds for is known of a mesh only.
+    // What they add to is the reaction of what holds the boundary. A platen
+    // gives way.
     template <int dim>
     void
-    warn_of_empty_regions(const Discretization<dim> &discretization,
-                          std::vector<std::string>  &warnings)
+    warn_of_useless_tractions(const Scene<dim>         &scene,
+                              std::vector<std::string> &warnings)
     {
-      const Materials<dim> &materials = discretization.scene().materials();
-      if (materials.is_homogeneous())
-        return;
-      std::vector<unsigned int> n_cells(materials.of_regions().size(), 0);
-      for (const auto &cell : discretization.dof_handler()
-                                .get_triangulation()
-                                .active_cell_iterators())
-        if (cell->is_locally_owned())
-          ++n_cells[materials.region(cell)];
-      for (unsigned int i = 1; i < n_cells.size(); ++i)
-        if (Utilities::MPI::sum(
-              n_cells[i], discretization.constraints().communicator()) == 0)
-          warnings.push_back(
-            "Warning: no cell of the last mesh has the material of region " +
-            std::to_string(i) +
-            " in 'Material/Regions'; is its condition the right one, or does "
-            "a later region cover it?");
+      for (const auto &traction : scene.traction_conditions())
+        for (const auto &condition : scene.dirichlet_conditions())
+          if (condition.boundary_id == traction.boundary_id &&
+              condition.platen == nullptr &&
+              condition.components.n_selected_components(dim) == dim)
+            warnings.push_back(
+              "Warning: 'Boundary conditions/Traction' does not move "
+              "boundary " +
+              std::to_string(traction.boundary_id) +
+              ", since all of its displacements are prescribed; leave a "
+              "component 'free', or the traction out.");
     }
   } // namespace
+
+
+
+  // Physical ids have been looked for in the mesh file; what a condition holds
+  // for is known of a mesh only.
+  template <int dim>
+  std::vector<std::string>
+  warnings_about_regions(const Discretization<dim> &discretization,
+                         const std::string         &which_mesh)
+  {
+    std::vector<std::string> warnings;
+    const Materials<dim>    &materials = discretization.scene().materials();
+    if (materials.is_homogeneous())
+      return warnings;
+    std::vector<unsigned int> n_cells(materials.of_regions().size(), 0);
+    for (const auto &cell : discretization.dof_handler()
+                              .get_triangulation()
+                              .active_cell_iterators())
+      if (cell->is_locally_owned())
+        ++n_cells[materials.region(cell)];
+    for (unsigned int i = 1; i < n_cells.size(); ++i)
+      if (Utilities::MPI::sum(n_cells[i],
+                              discretization.constraints().communicator()) == 0)
+        warnings.push_back(
+          "Warning: no cell of the " + which_mesh +
+          " mesh has the material of region " + std::to_string(i) +
+          " in 'Material/Regions'; is its condition the right one, or does a "
+          "later region cover it?");
+    return warnings;
+  }
 
 
 
@@ -255,6 +279,7 @@ namespace Friction
       scene.warning(discretization.contact().largest_coefficient());
     if (!about_scene.empty())
       warnings.push_back(about_scene);
+    warn_of_useless_tractions(scene, warnings);
     warn_of_cracks(mesh, warnings);
     const bool is_refined = parameters.refinement.initial_refinements > 0 ||
       parameters.refinement.levels > 0;
@@ -364,8 +389,8 @@ namespace Friction
     const ContactGeometry g =
       contact_geometry(discretization, displacement, state);
 
-    std::vector<std::string> warnings;
-    warn_of_empty_regions(discretization, warnings);
+    std::vector<std::string> warnings =
+      warnings_about_regions(discretization, "last");
     // A scene with a known solution is one for mathematicians.
     if (g.displacement > large_displacement * g.size &&
         scene.exact_displacement() == nullptr)
@@ -409,6 +434,10 @@ namespace Friction
 
 
 
+  template std::vector<std::string>
+  warnings_about_regions(const Discretization<2> &, const std::string &);
+  template std::vector<std::string>
+  warnings_about_regions(const Discretization<3> &, const std::string &);
   template std::vector<std::string> warnings_at_start(const Discretization<2> &,
                                                       const Parameters &);
   template std::vector<std::string> warnings_at_start(const Discretization<3> &,

@@ -20,6 +20,7 @@ namespace Friction
    * solved: what Parameters::warnings and Scene::warning() say, and
    * - boundary faces of the coarse mesh that lie on each other: a crack, or
    *   nodes that should have been merged;
+   * - tractions where all displacements are prescribed;
    * - a contact boundary from a mesh file that is a polygon and stays one,
    *   however fine the mesh;
    * - a contact boundary of which no node faces the obstacle;
@@ -29,6 +30,16 @@ namespace Friction
   std::vector<std::string>
   warnings_at_start(const Discretization<dim> &discretization,
                     const Parameters          &parameters);
+
+  /**
+   * Regions of 'Material/Regions' whose material no cell of the mesh has.
+   * @param which_mesh  as sentences call it, "first" or "last": cells of a
+   * finer mesh may have it.
+   */
+  template <int dim>
+  std::vector<std::string>
+  warnings_about_regions(const Discretization<dim> &discretization,
+                         const std::string         &which_mesh);
 
   /** How well what small displacements suppose is true of a solution. */
   struct ContactGeometry
@@ -72,7 +83,7 @@ namespace Friction
 
   /**
    * About a solution:
-   * - no cell has the material of a region;
+   * - no cell has the material of a region, see warnings_about_regions();
    * - displacements are not small against the body;
    * and, for each of the contact boundaries,
    * - no node is in contact;

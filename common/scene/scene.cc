@@ -798,6 +798,12 @@ namespace Friction
             "/Kind'.";
       }
 
+    if (n_contact_boundaries() == 0)
+      return "Warning: no part of the boundary may touch anything, so that "
+             "this "
+             "is plain elasticity; if there should be contact, set "
+             "'Contact/Boundary id' and 'Obstacle/Kind'.";
+
     double bound = std::numeric_limits<double>::max();
     for (const Material &material : the_materials.of_regions())
       bound = std::min(bound, eck_bound(dim, material.poisson_ratio()));

@@ -434,7 +434,7 @@ CASES = [
     (0, 'two forces that balance, and a pin', 'moved',
      {D: '2: 0, 0.01; 3: 0, -0.01', G: '2: free, 0.02; 3: free, -0.02', P: '(0,0.5): 0, 0',
       'Scene/Subdivisions': '4, 2', 'Obstacle/Kind': 'none', 'Contact/Boundary id': '-1',
-      'Contact/Friction coefficient': '0'}, 'good', []),
+      'Contact/Friction coefficient': '0'}, 'warning', ['plain elasticity']),
     (0, 'a force that pulls', 'moved', {G: '3: free, 0.02'}, 'error',
      ['cannot be reached.*component 2 on boundary 3']),
     (0, 'a force that friction cannot bear', 'moved', {G: '3: 0.01, -0.02'}, 'error',
@@ -605,6 +605,13 @@ CASES = [
      ['inside the obstacle before']),
     (10, 'no obstacle', 'moved', {'Obstacle/Kind': 'none'}, 'warning',
      ['there is no obstacle']),
+    (10, 'nothing that could touch', 'moved',
+     {'Obstacle/Kind': 'none', 'Contact/Boundary id': '-1'}, 'warning',
+     ['no part of the boundary may touch anything, so that this is plain elasticity']),
+    (10, 'traction where all is prescribed', 'moved', {T: '3: 0, -5; 1: 0.0001, 0'},
+     'warning', ["'Boundary conditions/Traction' does not move boundary 3"]),
+    (10, 'traction where a component is free', 'moved',
+     {D: '0: 0, free; 3: 0.001, -0.01', T: '0: 0, 0.0001'}, 'good', []),
     (10, 'polygon', 'mesh', mesh('polygon', **{'Refinement/Initial refinements': '1'}),
      'warning', ['edges of up to 22.6 degrees']),
     # 11. All the rest.
@@ -887,6 +894,10 @@ class Runner:
         result = self.run('moved', {'Obstacle/Point': '0, 0.02'}, '--check')
         self.verdict('--check warns', [] if result.returncode == 0 and
                      'inside the obstacle' in result.stdout else ['no warning'], result)
+        result = self.run('moved', {R: 'where x > 5: 2, .3'}, '--check')
+        self.verdict('--check warns of regions', [] if result.returncode == 0 and
+                     'no cell of the first mesh has the material of region 1' in
+                     result.stdout else ['no warning'], result)
         result = self.run('mesh', mesh('two'), '--check')
         self.verdict('--check finds errors', [] if result.returncode == 2 else
                      ['exit status'], result)
