@@ -188,8 +188,8 @@ namespace Friction
         declare_parameters(prm);
       }
 
-      // What is set from now on comes from another source, a file or the
-      // command line, and has the last word. Within one source an entry is set
+      // What is set from now on comes from another source, a file or an
+      // override, and has the last word. Within one source an entry is set
       // once.
       void
       begin_source()
@@ -1084,9 +1084,11 @@ namespace Friction
   {
     Values values;
     read_file(scene_file, values);
-    values.begin_source();
     for (const std::string &override_text : overrides)
-      read_override(override_text, values);
+      {
+        values.begin_source();
+        read_override(override_text, values);
+      }
 
     Parameters parameters;
 
