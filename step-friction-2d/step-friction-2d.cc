@@ -518,7 +518,7 @@ namespace StepFriction2d
         // to start from.
         if (!report.converged)
           {
-            output.add_failure(level, report);
+            output.add_failure(level, scene, report);
             return false;
           }
         if (last || !mark_cells(estimate))

@@ -212,6 +212,8 @@ namespace StepFriction3d
         output.save_checkpoint(nest);
         estimate = solve(nest, output);
       }
+    if (nest.report().converged && !nest.is_last())
+      output.nothing_to_refine(nest.state());
     while (nest.report().converged && nest.begin_next_load_step())
       {
         output.begin_load_step(nest.scene());

@@ -33,6 +33,10 @@ namespace Friction
     // error is that has been asked for.
     constexpr double well_known = 1e-6;
 
+    // A force cannot be better known than to this part of the largest one that
+    // the search has met: so much do rounding errors of positions change it.
+    constexpr double rounding = 1e-13;
+
     // A trial that does not converge is taken back in part, so many times.
     constexpr unsigned int maximum_retreats = 3;
 
@@ -292,7 +296,7 @@ namespace Friction
              << nearest.positions[j];
       }
     throw InputError(
-      scene.subject() +
+      scene.subject_at_time() +
       "the forces of 'Boundary conditions/Force' cannot be reached; nearest to "
       "them " +
       text.str() +
@@ -326,6 +330,7 @@ namespace Friction
     wanted                   = given_forces();
     SolverReport report      = solve_once(accuracy);
     unsigned int n_positions = 1, n_poor = 0;
+    double       largest_force = 0.;
 
     // The residual is what is left of the loads; the force of what holds the
     // body is opposite to it. The energy that has been asked for is that of the
@@ -344,6 +349,11 @@ namespace Friction
                                   wanted.cwiseAbs().maxCoeff(),
                                   result.forces.cwiseAbs().maxCoeff(),
                                   other_forces(discretization, report.residual)});
+      // Where no force is wanted, and there is no other, nothing but rounding
+      // is left of them in the end.
+      largest_force = std::max(largest_force, result.unit);
+      result.unit   = std::max(
+        result.unit, std::min(1., rounding / tolerance) * largest_force);
       const double missing_energy =
         result.missing.cwiseProduct(compliance * result.missing)
           .cwiseAbs()

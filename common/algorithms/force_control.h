@@ -64,7 +64,8 @@ namespace Friction
      * @param settings  of what solve_once solves with. Forces are found when
      *               they are those of the scene up to the tolerance of the
      *               certificate, relative to the largest force on the body that
-     *               there has been; if energy_tolerance is set, also the
+     *               there has been, or up to rounding of the largest one that
+     *               the search has met; if energy_tolerance is set, also the
      *               displacement that is missing must have no larger energy
      *               norm, or forces must be right to a millionth.
      * @param solve_once  solves with the displacements that are prescribed now,
@@ -109,7 +110,8 @@ namespace Friction
       VectorType      displacement, tractions;
       double          accuracy; ///< of its solution; zero: no rough one
 
-      /// The largest force on the body, of this one and of solutions before.
+      /// The largest force on the body, of this one and of solutions before,
+      /// but not less than what makes the tolerance larger than rounding.
       double unit;
 
       /// Whether the forces are those that the scene asks for.

@@ -28,7 +28,8 @@ namespace Friction
      * and the last change on this mesh once more, as many times as prescribed
      * displacements change once more, or if none did, times. That may be a
      * negative number, where loads are taken back. After the first step there
-     * is no change to repeat. Platens are moved to where the forces of the next
+     * is no change to repeat, and one that would have to be repeated more than
+     * four times is not. Platens are moved to where the forces of the next
      * step are expected. Collective.
      */
     void begin_next(Scene<dim>          &scene,

@@ -76,6 +76,7 @@ namespace Friction
     , levels(levels)
     , iteration(iteration)
     , settings(settings)
+    , budget(std::make_shared<CycleBudget>(settings.total_cycles))
     , whole_steps(
         iteration.functional(), std::min(1., settings.maximum_step_length), 0)
   {
@@ -266,7 +267,6 @@ namespace Friction
 
     const bool coulomb       = problem.has_coulomb_friction();
     const bool much_friction = coulomb && problem.effective_coefficient() > 1.;
-    budget = std::make_shared<CycleBudget>(settings.total_cycles);
     budget->begin_attempt();
     first.limits.patience      = much_friction ? short_patience : patience;
     first.limits.budget        = budget;

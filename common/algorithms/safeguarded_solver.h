@@ -36,10 +36,12 @@ namespace Friction
    * it may have several, and a solution that is not found is reported as what
    * it is, by SolverReport::converged.
    *
-   * All attempts together take SolverSettings::total_cycles cycles at most, and
-   * each of them half of those that are left, continuation and the last one
-   * all, so that a problem without hope comes to an end. Without Coulomb's
-   * friction the problem is convex, and 4 and 6 are left out.
+   * All attempts of all calls of solve() together take
+   * SolverSettings::total_cycles cycles at most, but for one in each of them,
+   * and each attempt half of those that are left, continuation and the last one
+   * all, so that a problem without hope, or a force that cannot be reached,
+   * comes to an end. Without Coulomb's friction the problem is convex, and 4
+   * and 6 are left out.
    */
   template <int dim>
   class SafeguardedSolver
@@ -81,8 +83,8 @@ namespace Friction
     MonotoneMultigrid<dim> &iteration;
     const SolverSettings    settings;
 
-    // Of the present solve().
-    std::shared_ptr<CycleBudget> budget;
+    // Of all calls of solve().
+    const std::shared_ptr<CycleBudget> budget;
 
     // Parts of attempts after the first, made when the first of them needs it.
     std::unique_ptr<Linearization<dim>>       phases;

@@ -331,7 +331,8 @@ namespace Friction
             prescribed_value * normal - gap >
               1e-8 * (std::abs(gap) + prescribed_value.norm()))
           throw InputError(
-            scene.subject() + "the prescribed displacement of the node at " +
+            scene.subject_at_time() +
+            "the prescribed displacement of the node at " +
             describe(node.point) +
             ", which also lies on the contact boundary, pushes it into the "
             "obstacle by " +

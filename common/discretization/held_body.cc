@@ -234,7 +234,7 @@ namespace Friction
                                      motion.transpose() * contact)
                        .motion.size() == 0;
             };
-            throw InputError(scene.subject() +
+            throw InputError(scene.subject_at_time() +
                              not_held<dim>(scene, part, holding, is_stopped));
           }
       }

@@ -326,12 +326,13 @@ namespace Friction
   template <int dim>
   void
   RunOutput<dim>::add_failure(const unsigned int  level,
+                              const Scene<dim>   &scene,
                               const SolverReport &report)
   {
-    the_console.note("No convergence on level " + std::to_string(level) +
-                     " within " +
-                     counted(report.cycles.size(), "cycle", "cycles") +
-                     ". Certificate: " + report.certificate.describe() + ".");
+    the_console.warning(
+      "No convergence on level " + std::to_string(level) + scene.at_time() +
+      " within " + counted(report.cycles.size(), "cycle", "cycles") +
+      ". Certificate: " + report.certificate.describe() + ".");
   }
 
 
@@ -341,13 +342,9 @@ namespace Friction
   RunOutput<dim>::add_end(const NestedIteration<dim> &nest)
   {
     if (!nest.report().converged)
-      add_failure(nest.level(), nest.report());
+      add_failure(nest.level(), nest.scene(), nest.report());
     else
-      {
-        if (!nest.is_last())
-          nothing_to_refine(nest.state());
-        check_end(nest.discretization(), nest.displacement(), nest.state());
-      }
+      check_end(nest.discretization(), nest.displacement(), nest.state());
   }
 
 

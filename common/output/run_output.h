@@ -101,14 +101,17 @@ namespace Friction
      */
     void add_exact_error(const ExactError &error, const bool with_order);
 
-    /** Says why the run ends before its last level: no cell has any error. */
+    /** Says why there is no finer mesh: no cell has any error. */
     void nothing_to_refine(const ContactState &state);
 
-    /** The same: this level could not be solved. */
-    void add_failure(const unsigned int level, const SolverReport &report);
+    /** Says why the run ends, also on a silent console: this level could not be
+     * solved, in a history at the present time of the scene. */
+    void add_failure(const unsigned int  level,
+                     const Scene<dim>   &scene,
+                     const SolverReport &report);
 
-    /** One of the two, if the run ends here and this is not its last level,
-     * and the warnings that the last solution gives reason for. */
+    /** The same, or if it could be solved, the quantities of the last solution
+     * and the warnings that it gives reason for. */
     void add_end(const NestedIteration<dim> &nest);
 
     /**

@@ -191,43 +191,75 @@ namespace Friction
     // Whether there is an obstacle and a boundary to touch it.
     template <int dim>
     bool
-    may_touch(const Scene<dim> &scene)
+    can_touch(const ContactCondition<dim> &condition)
     {
-      const auto &conditions = scene.contact_conditions();
-      return std::any_of(
-        conditions.begin(), conditions.end(), [](const auto &condition) {
-          return condition.has_boundary() && !condition.obstacle.empty();
-        });
+      return condition.has_boundary() && !condition.obstacle.empty();
     }
 
 
 
-    // Physical ids have been looked for in the mesh file; what a condition
-    // holds for is known of a mesh only.
+    // " of 'Contact 2'", where there are several contact boundaries.
+    template <int dim>
+    std::string
+    of_section(const Scene<dim> &scene, const ContactCondition<dim> &condition)
+    {
+      return scene.contact_conditions().size() == 1
+        ? std::string()
+        : " of '" + condition.section() + "'";
+    }
+
+
+
+    // What they add to is the reaction of what holds the boundary. A platen
+    // gives way.
     template <int dim>
     void
-    warn_of_empty_regions(const Discretization<dim> &discretization,
-                          std::vector<std::string>  &warnings)
+    warn_of_useless_tractions(const Scene<dim>         &scene,
+                              std::vector<std::string> &warnings)
     {
-      const Materials<dim> &materials = discretization.scene().materials();
-      if (materials.is_homogeneous())
-        return;
-      std::vector<unsigned int> n_cells(materials.of_regions().size(), 0);
-      for (const auto &cell : discretization.dof_handler()
-                                .get_triangulation()
-                                .active_cell_iterators())
-        if (cell->is_locally_owned())
-          ++n_cells[materials.region(cell)];
-      for (unsigned int i = 1; i < n_cells.size(); ++i)
-        if (Utilities::MPI::sum(
-              n_cells[i], discretization.constraints().communicator()) == 0)
-          warnings.push_back(
-            "Warning: no cell of the last mesh has the material of region " +
-            std::to_string(i) +
-            " in 'Material/Regions'; is its condition the right one, or does "
-            "a later region cover it?");
+      for (const auto &traction : scene.traction_conditions())
+        for (const auto &condition : scene.dirichlet_conditions())
+          if (condition.boundary_id == traction.boundary_id &&
+              condition.platen == nullptr &&
+              condition.components.n_selected_components(dim) == dim)
+            warnings.push_back(
+              "Warning: 'Boundary conditions/Traction' does not move "
+              "boundary " +
+              std::to_string(traction.boundary_id) +
+              ", since all of its displacements are prescribed; leave a "
+              "component 'free', or the traction out.");
     }
   } // namespace
+
+
+
+  // Physical ids have been looked for in the mesh file; what a condition holds
+  // for is known of a mesh only.
+  template <int dim>
+  std::vector<std::string>
+  warnings_about_regions(const Discretization<dim> &discretization,
+                         const std::string         &which_mesh)
+  {
+    std::vector<std::string> warnings;
+    const Materials<dim>    &materials = discretization.scene().materials();
+    if (materials.is_homogeneous())
+      return warnings;
+    std::vector<unsigned int> n_cells(materials.of_regions().size(), 0);
+    for (const auto &cell : discretization.dof_handler()
+                              .get_triangulation()
+                              .active_cell_iterators())
+      if (cell->is_locally_owned())
+        ++n_cells[materials.region(cell)];
+    for (unsigned int i = 1; i < n_cells.size(); ++i)
+      if (Utilities::MPI::sum(n_cells[i],
+                              discretization.constraints().communicator()) == 0)
+        warnings.push_back(
+          "Warning: no cell of the " + which_mesh +
+          " mesh has the material of region " + std::to_string(i) +
+          " in 'Material/Regions'; is its condition the right one, or does a "
+          "later region cover it?");
+    return warnings;
+  }
 
 
 
@@ -247,25 +279,23 @@ namespace Friction
       scene.warning(discretization.contact().largest_coefficient());
     if (!about_scene.empty())
       warnings.push_back(about_scene);
+    warn_of_useless_tractions(scene, warnings);
     warn_of_cracks(mesh, warnings);
     const bool is_refined = parameters.refinement.initial_refinements > 0 ||
       parameters.refinement.levels > 0;
     if (parameters.scene.geometry == GeometryKind::mesh_file && is_refined)
       warn_of_polygons(mesh, scene, warnings);
 
-    if (!may_touch(scene))
-      return warnings;
     const auto               &conditions = scene.contact_conditions();
     std::vector<unsigned int> n_nodes(conditions.size(), 0);
     for (const ContactNode<dim> &p : discretization.contact())
       ++n_nodes[p.condition];
     for (unsigned int i = 0; i < conditions.size(); ++i)
-      if (conditions[i].has_boundary() && !conditions[i].obstacle.empty() &&
+      if (can_touch(conditions[i]) &&
           Utilities::MPI::sum(n_nodes[i], communicator) == 0)
         warnings.push_back(
           "Warning: no node of the contact boundary" +
-          (conditions.size() == 1 ? std::string()
-                                  : " of '" + conditions[i].section() + "'") +
+          of_section(scene, conditions[i]) +
           " faces the obstacle, so there will be no contact" +
           (conditions.size() == 1 ? "" : " there") +
           "; does the normal of the obstacle point into it, and is '" +
@@ -275,7 +305,7 @@ namespace Friction
     Point<dim> where;
     for (const ContactNode<dim> &p : discretization.contact())
       {
-        if (-p.gap > depth)
+        if (can_touch(conditions[p.condition]) && -p.gap > depth)
           {
             depth = -p.gap;
             where = p.point;
@@ -304,40 +334,46 @@ namespace Friction
     const MPI_Comm communicator = discretization.constraints().communicator();
 
     ContactGeometry result;
-    const auto     &contact = discretization.contact();
+    result.boundaries.resize(scene.contact_conditions().size());
+    const auto &contact = discretization.contact();
     for (unsigned int p = 0; p < contact.size(); ++p)
       {
+        auto          &boundary = result.boundaries[contact[p].condition];
         Tensor<1, dim> u;
         for (unsigned int d = 0; d < dim; ++d)
           u[d] = displacement.local_element(dim * contact[p].node + d);
-        result.contact_displacement =
-          std::max(result.contact_displacement, u.norm());
+        boundary.displacement = std::max(boundary.displacement, u.norm());
         if (!state.in_contact(p))
           continue;
-        ++result.n_contact;
+        ++boundary.n_contact;
         const ContactCondition<dim> &condition =
           scene.contact_conditions()[contact[p].condition];
         const Obstacle<dim> &obstacle = condition.obstacle;
         if (obstacle.empty())
           continue;
         if (condition.normal == ContactNormal::body)
-          result.angle = std::max(
-            result.angle,
+          boundary.angle = std::max(
+            boundary.angle,
             degrees(contact[p].normal() *
                     obstacle.normal(contact[p].point, contact[p].normal())));
         const Point<dim> moved = contact[p].point + u;
         const double     distance =
           obstacle.gap(moved, obstacle.normal(moved, contact[p].normal()));
-        result.distance = std::max(result.distance, std::abs(distance));
+        boundary.distance = std::max(boundary.distance, std::abs(distance));
       }
 
     result.size         = discretization.body_size();
     result.displacement = displacement.linfty_norm();
-    result.n_contact    = Utilities::MPI::sum(result.n_contact, communicator);
-    result.angle        = Utilities::MPI::max(result.angle, communicator);
-    result.distance     = Utilities::MPI::max(result.distance, communicator);
-    result.contact_displacement =
-      Utilities::MPI::max(result.contact_displacement, communicator);
+    for (auto &boundary : result.boundaries)
+      {
+        boundary.n_contact =
+          Utilities::MPI::sum(boundary.n_contact, communicator);
+        boundary.angle = Utilities::MPI::max(boundary.angle, communicator);
+        boundary.distance =
+          Utilities::MPI::max(boundary.distance, communicator);
+        boundary.displacement =
+          Utilities::MPI::max(boundary.displacement, communicator);
+      }
     return result;
   }
 
@@ -353,8 +389,8 @@ namespace Friction
     const ContactGeometry g =
       contact_geometry(discretization, displacement, state);
 
-    std::vector<std::string> warnings;
-    warn_of_empty_regions(discretization, warnings);
+    std::vector<std::string> warnings =
+      warnings_about_regions(discretization, "last");
     // A scene with a known solution is one for mathematicians.
     if (g.displacement > large_displacement * g.size &&
         scene.exact_displacement() == nullptr)
@@ -362,32 +398,46 @@ namespace Friction
         "Warning: the largest displacement is " + number(g.displacement) +
         " in a body of size " + number(g.size) +
         "; strains and displacements are supposed to be small here.");
-    if (!may_touch(scene))
-      return warnings;
-    if (g.n_contact == 0)
-      warnings.push_back("Warning: in the end no node is in contact with the "
-                         "obstacle; do the loads push the body towards it, and "
-                         "does 'Obstacle/Normal' point into the obstacle?");
-    if (g.angle > large_angle)
-      warnings.push_back(
-        "Warning: nodes are in contact whose normal is up to " +
-        number(g.angle) +
-        " degrees off that of the obstacle, so that forces do not obey the law "
-        "of friction; set 'Contact/Contact normal = obstacle'.");
-    if (g.distance > large_distance * g.contact_displacement + 1e-12 * g.size)
-      warnings.push_back(
-        "Warning: displaced as they are, nodes in contact are up to " +
-        number(g.distance) +
-        " away from the obstacle, or inside it, at "
-        "displacements of " +
-        number(g.contact_displacement) +
-        "; gaps are those of the undeformed body, and displacements too large "
-        "for that.");
+    const auto &conditions = scene.contact_conditions();
+    for (unsigned int i = 0; i < conditions.size(); ++i)
+      if (can_touch(conditions[i]))
+        {
+          const auto       &boundary = g.boundaries[i];
+          const std::string whose    = of_section(scene, conditions[i]);
+          if (boundary.n_contact == 0)
+            warnings.push_back(
+              "Warning: in the end no node" + whose +
+              " is in contact with the obstacle; do the loads push the body "
+              "towards it, and does '" +
+              conditions[i].obstacle_section() +
+              "/Normal' point into the obstacle?");
+          if (boundary.angle > large_angle)
+            warnings.push_back(
+              "Warning: nodes" + whose +
+              " are in contact whose normal is up to " +
+              number(boundary.angle) +
+              " degrees off that of the obstacle, so that forces do not obey "
+              "the law of friction; set '" +
+              conditions[i].section() + "/Contact normal = obstacle'.");
+          if (boundary.distance >
+              large_distance * boundary.displacement + 1e-12 * g.size)
+            warnings.push_back(
+              "Warning: displaced as they are, nodes" + whose +
+              " in contact are up to " + number(boundary.distance) +
+              " away from the obstacle, or inside it, at displacements of " +
+              number(boundary.displacement) +
+              "; gaps are those of the undeformed body, and displacements too "
+              "large for that.");
+        }
     return warnings;
   }
 
 
 
+  template std::vector<std::string>
+  warnings_about_regions(const Discretization<2> &, const std::string &);
+  template std::vector<std::string>
+  warnings_about_regions(const Discretization<3> &, const std::string &);
   template std::vector<std::string> warnings_at_start(const Discretization<2> &,
                                                       const Parameters &);
   template std::vector<std::string> warnings_at_start(const Discretization<3> &,

@@ -20,6 +20,7 @@ namespace Friction
    * solved: what Parameters::warnings and Scene::warning() say, and
    * - boundary faces of the coarse mesh that lie on each other: a crack, or
    *   nodes that should have been merged;
+   * - tractions where all displacements are prescribed;
    * - a contact boundary from a mesh file that is a polygon and stays one,
    *   however fine the mesh;
    * - a contact boundary of which no node faces the obstacle;
@@ -30,24 +31,43 @@ namespace Friction
   warnings_at_start(const Discretization<dim> &discretization,
                     const Parameters          &parameters);
 
+  /**
+   * Regions of 'Material/Regions' whose material no cell of the mesh has.
+   * @param which_mesh  as sentences call it, "first" or "last": cells of a
+   * finer mesh may have it.
+   */
+  template <int dim>
+  std::vector<std::string>
+  warnings_about_regions(const Discretization<dim> &discretization,
+                         const std::string         &which_mesh);
+
   /** How well what small displacements suppose is true of a solution. */
   struct ContactGeometry
   {
-    /// Over all processes.
-    unsigned int n_contact = 0;
+    /** Of one of the contact boundaries, over all processes. */
+    struct OfBoundary
+    {
+      /// Nodes in contact.
+      unsigned int n_contact = 0;
 
-    /// Where gaps are measured along the normals of the body: the largest angle
-    /// between that of a node in contact and the direction straight to the
-    /// obstacle; degrees.
-    double angle = 0;
+      /// Where gaps are measured along the normals of the body: the largest
+      /// angle between that of a node in contact and the direction straight to
+      /// the obstacle; degrees.
+      double angle = 0;
 
-    /// How far a node in contact is from the obstacle when it is displaced,
-    /// outside or inside; a length.
-    double distance = 0;
+      /// How far a node in contact is from the obstacle when it is displaced,
+      /// outside or inside; a length.
+      double distance = 0;
 
-    /// The largest displacement at the contact boundary, and of all nodes;
-    /// lengths.
-    double contact_displacement = 0, displacement = 0;
+      /// The largest displacement, a length.
+      double displacement = 0;
+    };
+
+    /// In the order of Scene::contact_conditions().
+    std::vector<OfBoundary> boundaries;
+
+    /// The largest displacement of all nodes, a length.
+    double displacement = 0;
 
     /// The diameter of a box around the body, a length.
     double size = 0;
@@ -63,12 +83,13 @@ namespace Friction
 
   /**
    * About a solution:
-   * - no cell has the material of a region;
+   * - no cell has the material of a region, see warnings_about_regions();
+   * - displacements are not small against the body;
+   * and, for each of the contact boundaries,
    * - no node is in contact;
    * - normals of the body are used where they are not those of the obstacle, so
    *   that forces do not obey the law of friction;
-   * - displacements are not small against the body, or nodes in contact are not
-   *   where the obstacle is.
+   * - nodes in contact are not where the obstacle is.
    */
   template <int dim>
   std::vector<std::string>

@@ -356,7 +356,7 @@ namespace Friction
       {"Refinement",
        "Marking",
        "0.5",
-       make(Patterns::Double(0., 1.)),
+       make(Patterns::Double(1e-300, 1.)),
        "Adaptive: refine cells with at least this fraction of the largest "
        "error indicator."},
       {"Refinement",
@@ -454,8 +454,9 @@ namespace Friction
        "5000",
        steps,
        "Give up after this many multigrid cycles of all attempts that "
-       "safeguards make on a level, each of which gets half of those that are "
-       "left."},
+       "safeguards make on a level, for all positions of platens that are "
+       "tried "
+       "there. Each attempt gets half of those that are left."},
       {"Solver",
        "Maximum outer iterations",
        "50",

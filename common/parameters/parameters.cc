@@ -89,7 +89,7 @@ namespace Friction
     wanted(const Patterns::PatternBase &pattern)
     {
       std::string text = pattern.description(Patterns::PatternBase::Text);
-      if (text.find("1e-300") != text.npos)
+      if (text.find("1e-300 <= v <= MAX_DOUBLE") != text.npos)
         return "a positive number";
       // The descriptions begin sentences and name limits that no value meets.
       text[0]            = std::tolower(text[0]);
@@ -101,6 +101,7 @@ namespace Friction
       replace("floating point number", "number");
       replace(" v such that -MAX_DOUBLE <= v <= MAX_DOUBLE", "");
       replace(" <= 2147483647", "");
+      replace("1e-300 <= v", "0 < v");
       return text;
     }
 
@@ -158,11 +159,12 @@ namespace Friction
 
 
 
-    // Whether a word is among those of an expression.
-    bool
-    uses_word(const std::string &expression, const std::string &word)
+    // How often a word is among those of an expression.
+    unsigned int
+    n_uses(const std::string &expression, const std::string &word)
     {
-      const auto is_name = [](const unsigned char c) {
+      unsigned int n       = 0;
+      const auto   is_name = [](const unsigned char c) {
         return std::isalnum(c) || c == '_';
       };
       for (std::size_t i = expression.find(word); i != expression.npos;
@@ -170,8 +172,8 @@ namespace Friction
         if ((i == 0 || !is_name(expression[i - 1])) &&
             (i + word.size() == expression.size() ||
              !is_name(expression[i + word.size()])))
-          return true;
-      return false;
+          ++n;
+      return n;
     }
 
 
@@ -184,6 +186,15 @@ namespace Friction
       Values()
       {
         declare_parameters(prm);
+      }
+
+      // What is set from now on comes from another source, a file or an
+      // override, and has the last word. Within one source an entry is set
+      // once.
+      void
+      begin_source()
+      {
+        set_by_source.clear();
       }
 
       void
@@ -200,6 +211,10 @@ namespace Friction
             throw InputError(where + ": there is no entry '" + excerpt(path) +
                              "'; did you mean '" + nearest(path, known) + "'?");
           }
+        if (!set_by_source.insert(path).second)
+          throw InputError(where + ": '" + path +
+                           "' has been set already, by " + origin[path] +
+                           "; remove one of them.");
         if (!entry->pattern->match(value))
           throw InputError(where + ": '" + excerpt(value) +
                            "' is no value for '" + path + "'; give " +
@@ -238,7 +253,7 @@ namespace Friction
         // Not string_to_double(), which throws where a number is too small.
         const double value = std::strtod(get(path).c_str(), nullptr);
         if (!(std::abs(value) <= largest_number))
-          throw InputError(subject(path) + " is " + get(path) +
+          throw InputError(subject(path) + " is " + excerpt(get(path)) +
                            ", which is beyond 1e30; choose other units.");
         return value;
       }
@@ -249,7 +264,7 @@ namespace Friction
         const double value = number(path);
         if (!(value >= 1. / largest_number))
           throw InputError(
-            subject(path) + " is " + get(path) + ", but it must " +
+            subject(path) + " is " + excerpt(get(path)) + ", but it must " +
             (value > 0. ? "not be below 1e-30; choose other units."
                         : "be positive."));
         return value;
@@ -282,14 +297,14 @@ namespace Friction
           get(path) != find_entry(path)->default_value;
       }
 
-      // Whether some value uses a word, as expressions do.
-      bool
-      any_uses(const std::string &word)
+      // How often values that have been set use a word, as expressions do.
+      unsigned int
+      n_uses(const std::string &word)
       {
+        unsigned int n = 0;
         for (const auto &[path, where] : origin)
-          if (uses_word(get(path), word))
-            return true;
-        return false;
+          n += Friction::n_uses(get(path), word);
+        return n;
       }
 
       // "where: 'Section/Entry'", the beginning of a sentence.
@@ -315,6 +330,7 @@ namespace Friction
     private:
       ParameterHandler                   prm;
       std::map<std::string, std::string> origin;
+      std::set<std::string>              set_by_source;
       std::set<unsigned int>             further;
     };
 
@@ -479,12 +495,12 @@ namespace Friction
                              "' is not of the form 'name = expression'; "
                              "correct it.");
           if (taken.count(name) > 0)
-            throw InputError(values.subject(path) + ": '" + name +
+            throw InputError(values.subject(path) + ": '" + excerpt(name) +
                              "' is a constant already; choose another name.");
           for (const auto &other : names)
             if (other.first == name)
               throw InputError(values.subject(path) + " says twice what '" +
-                               name + "' is; remove one of them.");
+                               excerpt(name) + "' is; remove one of them.");
           if (name == "x" || name == "y" || name == "z")
             throw InputError(values.subject(path) + ": '" + name +
                              "' is a coordinate; choose another name.");
@@ -661,7 +677,7 @@ namespace Friction
       contact.varying_coefficient  = values.get(name);
       const auto first_use         = std::find_if(
         definitions.begin(), definitions.end(), [](const auto &definition) {
-          return uses_word(definition.second, "F");
+          return n_uses(definition.second, "F") > 0;
         });
       const Expressions before(constants,
                                {definitions.begin(), first_use},
@@ -910,19 +926,69 @@ namespace Friction
           const std::string law = contact + "Friction law";
           only_with(contact + "Friction bound", law, {"Tresca"});
           // Expressions may use the first one as F.
-          if (number > 1 || !values.any_uses("F"))
+          if (number > 1 || values.n_uses("F") == 0)
             only_with(contact + "Friction coefficient", law, {"Coulomb"});
         }
       for (const std::string name : {"Marking", "Contact zone"})
         only_with("Refinement/" + name, "Refinement/Strategy", {"adaptive"});
       if (split(values.get("Load steps/Times"), ',').size() > 1 &&
-          !values.any_uses("t"))
+          values.n_uses("t") == 0)
         warnings.push_back(
           "Warning: " + values.subject("Load steps/Times") +
           " has several times, but nothing in the scene depends on t.");
-      only_with("Output/Format", "Output/Fields", {"true", "yes"});
-      only_with("Output/Principal stresses", "Output/Fields", {"true", "yes"});
+      // Safeguards may come to use the other entries of Algorithm 2, too.
+      const std::vector<std::string> yes = {"true", "yes"};
+      for (const std::string name : {"Outer damping", "Mixed outer iterations"})
+        only_with("Solver/" + name, "Solver/Algorithm", {"fixed point"});
+      if (!values.flag("Solver/Safeguards"))
+        for (const std::string name :
+             {"Outer tolerance", "Maximum outer iterations"})
+          only_with("Solver/" + name, "Solver/Algorithm", {"fixed point"});
+      only_with("Solver/Total cycles", "Solver/Safeguards", yes);
+      only_with("Solver/Recombined steps",
+                "Solver/Coarse correction",
+                {"truncated", "algebraic"});
+      only_with("Output/Format", "Output/Fields", yes);
+      only_with("Output/Principal stresses", "Output/Fields", yes);
+      // Where it is defined it is used once.
+      for (const std::string path : {"Scene/Constants", "Scene/Definitions"})
+        for (const std::string &part : split(values.get(path), ';'))
+          {
+            const std::string name =
+              Utilities::trim(part.substr(0, part.find('=')));
+            if (values.n_uses(name) < 2)
+              warnings.push_back("Warning: " + values.subject(path) +
+                                 " says what '" + excerpt(name) +
+                                 "' is, which nothing uses.");
+          }
       return warnings;
+    }
+
+
+
+    // Friction feels what the body does, and not what the obstacle does.
+    void
+    warn_of_moving_obstacles(Values &values, Parameters &parameters)
+    {
+      const auto warn = [&](const unsigned int          number,
+                            const Parameters::Obstacle &obstacle,
+                            const Parameters::Contact  &contact) {
+        const bool has_friction = contact.friction_law == FrictionLaw::tresca ||
+          (contact.friction_law == FrictionLaw::coulomb &&
+           (contact.friction_coefficient > 0. ||
+            !contact.varying_coefficient.empty()));
+        if (parameters.load_steps.times.size() > 1 && has_friction &&
+            obstacle.kind == ObstacleKind::surface &&
+            n_uses(parameters.expressions.expand(obstacle.function), "t") > 0)
+          parameters.warnings.push_back(
+            "Warning: " +
+            values.subject(section_name("Obstacle", number) + "/Function") +
+            " moves with t, but slip is that of the body: friction takes no "
+            "notice of an obstacle that moves along its own surface.");
+      };
+      warn(1, parameters.obstacle, parameters.contact);
+      for (const auto &further : parameters.further_contacts)
+        warn(further.number, further.obstacle, further.contact);
     }
 
   } // namespace
@@ -941,7 +1007,8 @@ namespace Friction
     // definition.
     for (const auto &[name, expression] : definitions)
       {
-        parse_function<3>({expression}, *this, where + " of '" + name + "'");
+        parse_function<3>(
+          {expression}, *this, where + " of '" + excerpt(name) + "'");
         expanded_definitions[name] = expand(expression);
       }
   }
@@ -1005,7 +1072,10 @@ namespace Friction
     Values values;
     read_file(scene_file, values);
     for (const std::string &override_text : overrides)
-      read_override(override_text, values);
+      {
+        values.begin_source();
+        read_override(override_text, values);
+      }
 
     Parameters parameters;
 
@@ -1111,8 +1181,8 @@ namespace Friction
         }
       else if (!scene.mesh_file.empty())
         throw InputError(values.subject("Scene/Mesh file") + " is '" +
-                         scene.mesh_file + "', but 'Scene/Geometry' is '" +
-                         geometry +
+                         excerpt(scene.mesh_file) +
+                         "', but 'Scene/Geometry' is '" + geometry +
                          "'; set that to 'mesh file', or remove the file.");
       scene.distortion         = values.number("Scene/Distortion");
       scene.rotation_angle     = values.number("Scene/Rotation angle");
@@ -1228,6 +1298,7 @@ namespace Friction
     }
 
     parameters.warnings = unused_entries(values);
+    warn_of_moving_obstacles(values, parameters);
     return parameters;
   }
 

@@ -283,7 +283,8 @@ namespace Friction
 
   /**
    * Read a scene file and let the overrides, each of the form
-   * <tt>Section/Entry=value</tt>, have the last word. Throws InputError.
+   * <tt>Section/Entry=value</tt>, have the last word, of several of an entry
+   * the last one. Throws InputError, also if the file sets an entry twice.
    */
   Parameters read_parameters(const std::string              &scene_file,
                              const std::vector<std::string> &overrides = {});

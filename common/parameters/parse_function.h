@@ -48,6 +48,42 @@ namespace Friction
   }
 
   /**
+   * Throws InputError if an expression compares what a comparison says, as
+   * '0.5 < x < 1' does: muParser would take it for '(0.5 < x) < 1', which is
+   * true on the wrong side. Between two comparisons there must be a logical
+   * operator, a condition, a comma, or parentheses around one of them.
+   */
+  inline void
+  check_comparisons(const std::string &expression, const std::string &where)
+  {
+    // Whether there has been one, at each depth of parentheses.
+    std::vector<bool> compares(1, false);
+    for (std::size_t i = 0; i < expression.size(); ++i)
+      {
+        const char c             = expression[i];
+        const bool is_comparison = c == '<' || c == '>' || c == '=' || c == '!';
+        if (c == '(')
+          compares.push_back(false);
+        else if (c == ')' && compares.size() > 1)
+          compares.pop_back();
+        else if (std::string("&|?:,").find(c) != std::string::npos)
+          compares.back() = false;
+        else if (is_comparison && compares.back())
+          throw InputError(where + ": '" + excerpt(expression) +
+                           "' has two comparisons in a row, the second of "
+                           "which would compare true or false with a number; "
+                           "join them by '&&', as in '0.5 < x && x < 1'.");
+        else if (is_comparison)
+          {
+            compares.back() = true;
+            // '<=', '>=', '==' and '!=' are one operator each.
+            if (i + 1 < expression.size() && expression[i + 1] == '=')
+              ++i;
+          }
+      }
+  }
+
+  /**
    * A function of the coordinates from one expression per component, which may
    * use the given names. With @p with_time and if there is a time, they may use
    * that as well, which set_time() of the function sets. Throws InputError if
@@ -67,6 +103,7 @@ namespace Friction
     for (const std::string &component : components)
       {
         check_is_one_value(component, where);
+        check_comparisons(component, where);
         expanded.push_back(expressions.expand(component));
       }
 
@@ -105,7 +142,10 @@ namespace Friction
             (text.empty() ? "" : ", ") + dealii::Utilities::trim(component);
         throw InputError(where + ": '" + excerpt(text) +
                          "' cannot be understood; check its syntax and the "
-                         "names in it.");
+                         "names in it" +
+                         (expressions.has_time() && !with_time
+                            ? "; the time t is none of them here."
+                            : "."));
       }
     return function;
   }

@@ -110,7 +110,8 @@ namespace Friction
 
     unsigned int maximum_cycles = 200;
 
-    /// All attempts of the safeguards together.
+    /// All attempts of the safeguards on a level together, for all positions of
+    /// platens.
     unsigned int total_cycles = 5000;
 
     unsigned int maximum_outer_iterations = 50;

@@ -24,9 +24,13 @@ namespace Friction
     VectorType guess;
     nest.make_guess(guess);
 
-    const Discretization<dim>     &discretization = nest.discretization();
-    const std::vector<std::string> warnings =
+    const Discretization<dim> &discretization = nest.discretization();
+    std::vector<std::string>   warnings =
       warnings_at_start(discretization, parameters);
+    // A run says this in the end, of its last mesh.
+    for (const std::string &warning :
+         warnings_about_regions(discretization, "first"))
+      warnings.push_back(warning);
 
     const auto               &conditions = nest.scene().contact_conditions();
     std::vector<double>       smallest_gaps(conditions.size(),

@@ -423,6 +423,21 @@ namespace Friction
 
 
 
+    // Along a cylinder whose section has cells about as wide as that. It may be
+    // too large for an integer, see n_coarse_cells().
+    double
+    n_layers(const Parameters::Scene &scene, const double cell_width)
+    {
+      return scene.layers > 0
+        ? scene.layers
+        : std::max(1., std::round(scene.length / cell_width));
+    }
+
+    // Of the two cylinders, relative to the radius.
+    constexpr double width_in_disc = .6, width_in_half_disc = .2;
+
+
+
     // There is such a body, but not in this dimension.
     InputError
     no_such_body(const std::string &where,
@@ -468,16 +483,10 @@ namespace Friction
     {
       const double R = scene.radius, length = scene.length;
       const double tolerance = 1e-10 * std::min(R, length);
-      const auto   n_layers  = [&](const double cell_width) {
-        return scene.layers > 0
-             ? scene.layers
-             : std::max(
-              1u, static_cast<unsigned int>(std::lround(length / cell_width)));
-      };
-      const auto end_id = [=](const Point<3> &p, const unsigned int first) {
+      const auto   end_id = [=](const Point<3> &p, const unsigned int first) {
         return p[2] < tolerance       ? first
-          : p[2] > length - tolerance ? first + 1
-                                      : 0u;
+            : p[2] > length - tolerance ? first + 1
+                                        : 0u;
       };
 
       if (scene.geometry == GeometryKind::half_disc)
@@ -486,13 +495,19 @@ namespace Friction
         create(
           scene.coarse_grid == CoarseGrid::one_cell
             ? extrude(inscribed_square(R), length, 1)
-            : extrude(disc(R), length, n_layers(.6 * R)),
+            : extrude(
+                disc(R),
+                length,
+                static_cast<unsigned int>(n_layers(scene, width_in_disc * R))),
           [=](const Point<3> &p) { return end_id(p, 1); },
           numbers::invalid_boundary_id,
           triangulation);
       else if (scene.geometry == GeometryKind::half_cylinder)
         create(
-          extrude(half_disc(R), length, n_layers(.2 * R)),
+          extrude(
+            half_disc(R),
+            length,
+            static_cast<unsigned int>(n_layers(scene, width_in_half_disc * R))),
           [=](const Point<3> &p) {
             return p[1] > -tolerance ? 1u : end_id(p, 2);
           },
@@ -546,6 +561,33 @@ namespace Friction
         distort(scene.distortion, cell_size, triangulation);
     }
   } // namespace
+
+
+
+  double
+  n_coarse_cells(const Parameters::Scene &scene)
+  {
+    const double R = scene.radius;
+    switch (scene.geometry)
+      {
+        case GeometryKind::rectangle:
+          {
+            double product = 1.;
+            for (const unsigned int n : scene.subdivisions)
+              product *= n;
+            return product;
+          }
+        case GeometryKind::cylinder:
+          return scene.coarse_grid == CoarseGrid::one_cell
+            ? 1.
+            : disc(R).cells.size() * n_layers(scene, width_in_disc * R);
+        case GeometryKind::half_cylinder:
+          return half_disc(R).cells.size() *
+            n_layers(scene, width_in_half_disc * R);
+        default:
+          return 0.;
+      }
+  }
 
 
 

@@ -12,6 +12,13 @@ namespace Friction
   using namespace dealii;
 
   /**
+   * How many cells the coarse mesh of a body will have, if its size is up to
+   * the scene; otherwise, and for a mesh file, zero. A number that may be
+   * larger than any integer.
+   */
+  double n_coarse_cells(const Parameters::Scene &scene);
+
+  /**
    * Make the coarse mesh of a body in an empty triangulation that lives on one
    * processor, and set boundary and manifold ids. The manifolds themselves are
    * attached later, by set_manifolds(), since they are lost when a mesh is

@@ -529,7 +529,8 @@ namespace Friction
     if (!stream.is_open() || bytes.empty())
       throw InputError(
         where + (stream.is_open() ? "there is nothing in" : "cannot open") +
-        " the mesh file '" + path + "'; correct 'Scene/Mesh file'.");
+        " the mesh file '" + excerpt(path, 300) +
+        "'; correct 'Scene/Mesh file'.");
 
     GmshFile  file;
     Reader    reader(bytes, beginning);

@@ -40,31 +40,38 @@ namespace Friction
                        const unsigned int n_levels,
                        const MPI_Comm     communicator)
   {
-    // A mesh has about as many vertices as cells.
-    const double       n_dofs    = dim * n_cells;
-    const double       needed    = bytes_per_dof(dim) * n_dofs;
-    const double       available = memory_within_reach(communicator);
     std::ostringstream text;
     text.precision(2);
     if (n_levels > deepest_level(dim))
-      text << "a cell cannot be refined more than " << deepest_level(dim)
-           << " times in " << dim
-           << " dimensions; reduce 'Refinement/Levels' or 'Refinement/Initial "
-              "refinements'.";
-    else if (1.2 * n_dofs >
-             double(std::numeric_limits<types::global_dof_index>::max()))
-      text
-        << "the next mesh would have " << n_dofs
-        << " degrees of freedom, more than this build of deal.II can number; "
-           "reduce 'Refinement/Maximum dofs' or 'Refinement/Initial "
-           "refinements'.";
+      {
+        text
+          << "a cell cannot be refined more than " << deepest_level(dim)
+          << " times in " << dim
+          << " dimensions; reduce 'Refinement/Levels' or 'Refinement/Initial "
+             "refinements'.";
+        throw InputError(text.str());
+      }
+
+    // A mesh has about as many vertices as cells.
+    const bool   is_coarse = n_levels == 0;
+    const double n_dofs    = dim * n_cells;
+    const double needed    = bytes_per_dof(dim) * n_dofs;
+    const double available = memory_within_reach(communicator);
+    text << "the " << (is_coarse ? "coarse" : "next") << " mesh would have "
+         << n_dofs << " degrees of freedom";
+    if (1.2 * n_dofs >
+        double(std::numeric_limits<types::global_dof_index>::max()))
+      text << ", more than this build of deal.II can number";
     else if (available > 0. && needed > available)
-      text << "the next mesh would have " << n_dofs
-           << " degrees of freedom and need about " << needed / 1e9
-           << " GB of memory, of which there are " << available / 1e9
-           << "; reduce 'Refinement/Maximum dofs', 'Refinement/Levels' or "
-              "'Refinement/Initial refinements', or take more machines.";
-    if (!text.str().empty())
-      throw InputError(text.str());
+      text << " and need about " << needed / 1e9
+           << " GB of memory, of which there are " << available / 1e9;
+    else
+      return;
+    text << (is_coarse
+               ? "; give fewer cells in 'Scene/Subdivisions' or "
+                 "'Scene/Layers', or a body that is not so long."
+               : "; reduce 'Refinement/Maximum dofs', 'Refinement/Levels' or "
+                 "'Refinement/Initial refinements', or take more machines.");
+    throw InputError(text.str());
   }
 } // namespace Friction

@@ -13,7 +13,8 @@ namespace Friction
    * of freedom, or if its cells are refined too often. Collective.
    *
    * @param n_cells   active cells that the mesh will have on all processes
-   * @param n_levels  refinements that the smallest of them will have
+   * @param n_levels  refinements that the smallest of them will have; zero: it
+   *                  is the coarse mesh
    */
   void check_that_mesh_fits(const unsigned int dim,
                             const double       n_cells,

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <sstream>
 #include <utility>
 
@@ -392,6 +393,58 @@ namespace Friction
               parts[number].joint = cell->vertex(v);
             }
     }
+
+
+
+    template <int dim>
+    bool
+    has_contact(const Scene<dim> &scene, const FreePart<dim> &part)
+    {
+      const auto &conditions = scene.contact_conditions();
+      return std::any_of(
+        conditions.begin(), conditions.end(), [&](const auto &condition) {
+          return part.boundary_ids.count(condition.boundary_id) > 0 &&
+            !condition.obstacle.empty();
+        });
+    }
+
+
+
+    // Whether the part has a boundary of which the force is given.
+    template <int dim>
+    bool
+    has_platen(const Scene<dim> &scene, const FreePart<dim> &part)
+    {
+      const auto &conditions = scene.dirichlet_conditions();
+      return std::any_of(
+        conditions.begin(), conditions.end(), [&](const auto &condition) {
+          return condition.platen != nullptr &&
+            part.boundary_ids.count(condition.boundary_id) > 0;
+        });
+    }
+
+
+
+    // Whether an obstacle can resist the platens of a part: it touches one
+    // itself, or has a platen in common with a part that does.
+    template <int dim>
+    bool
+    can_resist_platens(const Scene<dim>                 &scene,
+                       const std::vector<FreePart<dim>> &parts,
+                       const FreePart<dim>              &part)
+    {
+      return std::any_of(parts.begin(), parts.end(), [&](const auto &other) {
+        const auto &conditions = scene.dirichlet_conditions();
+        return has_contact(scene, other) &&
+          (&other == &part ||
+           std::any_of(
+             conditions.begin(), conditions.end(), [&](const auto &condition) {
+               return condition.platen != nullptr &&
+                 part.boundary_ids.count(condition.boundary_id) > 0 &&
+                 other.boundary_ids.count(condition.boundary_id) > 0;
+             }));
+      });
+    }
   } // namespace
 
 
@@ -425,16 +478,25 @@ namespace Friction
       find_joints(mesh, part_of_cell, parts);
 
     // Each component that is prescribed in a vertex is an equation for the
-    // motions.
+    // motions. One that a platen controls is the same in all its vertices, and
+    // is held only if an obstacle can resist; whether that bears the given
+    // force is found out by looking for it, see ForceControl.
     std::vector<Eigen::MatrixXd> equations(
       parts.size(), Eigen::MatrixXd::Zero(n_motions<dim>, n_motions<dim>));
+    std::vector<bool> platens_hold(parts.size());
+    for (unsigned int number = 0; number < parts.size(); ++number)
+      platens_hold[number] = can_resist_platens(scene, parts, parts[number]);
+    // Of each part and condition a vertex, from which others are counted.
+    std::map<std::pair<unsigned int, const void *>, Point<dim>> first_vertices;
     for (const auto &cell : mesh.cell_iterators_on_level(0))
       {
-        const unsigned int number    = part_of_cell[cell->index()];
-        const auto         prescribe = [&](const Point<dim>  &p,
-                                   const unsigned int component) {
-          const Eigen::VectorXd row =
-            all_motions_at(parts[number], p).row(component).transpose();
+        const unsigned int number = part_of_cell[cell->index()];
+        const auto         row_of = [&](const Point<dim>  &p,
+                                const unsigned int component) {
+          return Eigen::VectorXd(
+            all_motions_at(parts[number], p).row(component).transpose());
+        };
+        const auto prescribe = [&](const Eigen::VectorXd &row) {
           equations[number] += row * row.transpose();
         };
         for (const auto &face : cell->face_iterators())
@@ -442,12 +504,22 @@ namespace Friction
             for (const auto &condition : scene.dirichlet_conditions())
               if (face->boundary_id() == condition.boundary_id)
                 for (const unsigned int v : face->vertex_indices())
-                  for (unsigned int d = 0; d < dim; ++d)
-                    if (condition.components[d])
-                      prescribe(face->vertex(v), d);
+                  {
+                    const Point<dim> p = face->vertex(v);
+                    const Point<dim> first =
+                      first_vertices.insert({{number, &condition}, p})
+                        .first->second;
+                    for (unsigned int d = 0; d < dim; ++d)
+                      if (condition.components[d])
+                        prescribe(condition.platen != nullptr &&
+                                      condition.platen->is_controlled[d] &&
+                                      !platens_hold[number]
+                                    ? row_of(p, d) - row_of(first, d)
+                                    : row_of(p, d));
+                  }
         scene.for_each_pin(cell,
                            [&](const PinnedPoint<dim> &pin, unsigned int) {
-                             prescribe(pin.point, pin.component);
+                             prescribe(row_of(pin.point, pin.component));
                            });
       }
 
@@ -485,20 +557,6 @@ namespace Friction
       for (const auto id : ids)
         text += (text.empty() ? "" : ", ") + std::to_string(id);
       return text;
-    }
-
-
-
-    template <int dim>
-    bool
-    has_contact(const Scene<dim> &scene, const FreePart<dim> &part)
-    {
-      const auto &conditions = scene.contact_conditions();
-      return std::any_of(
-        conditions.begin(), conditions.end(), [&](const auto &condition) {
-          return part.boundary_ids.count(condition.boundary_id) > 0 &&
-            !condition.obstacle.empty();
-        });
     }
   } // namespace
 
@@ -555,10 +613,16 @@ namespace Friction
       "neither a displacement " +
       (has_contact(scene, part) ? "nor contact stops it"
                                 : "nor an obstacle stops it") +
+      (has_platen(scene, part) ? ", and a boundary with a given force does not"
+                               : "") +
       "; prescribe a displacement on one of its boundaries (" +
       list(part.boundary_ids) +
       ") in 'Boundary conditions/Displacement', or of a vertex in 'Boundary "
-      "conditions/Pinned points'.";
+      "conditions/Pinned points'" +
+      (scene.n_load_steps() > 1 && has_contact(scene, part)
+         ? ", or let there be loads that press it against an obstacle at each "
+           "of the 'Load steps/Times'."
+         : ".");
   }
 
 

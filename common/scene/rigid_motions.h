@@ -94,7 +94,7 @@ namespace Friction
 
   /**
    * The parts of a body that boundary conditions leave a rigid motion; usually
-   * none.
+   * none. What a platen controls holds a part only if an obstacle can resist.
    * @param mesh          whose coarse cells all processes know.
    * @param part_of_cell  on return as that of find_parts().
    */

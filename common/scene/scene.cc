@@ -73,7 +73,8 @@ namespace Friction
     if (mesh_file != nullptr && !is_number)
       return mesh_file->boundary_id(text, where);
     throw InputError(
-      where + ": '" + text + "' is no boundary id; give a number from 0 on" +
+      where + ": '" + excerpt(text) +
+      "' is no boundary id; give a number from 0 on" +
       (is_number ? "." : ", or the name of a group of a mesh file."));
   }
 
@@ -453,19 +454,21 @@ namespace Friction
                            " leaves a component free, which is not possible "
                            "together with 'Scene/Rotation angle'; set one of "
                            "them otherwise.");
+        // No scene file has these names of coordinates.
+        parse_function<dim>(
+          components,
+          parameters.expressions,
+          there +
+            ", where a total force cannot depend on the place, for which there "
+            "is 'Traction'",
+          dim == 2 ? "no_x,no_y" : "no_x,no_y,no_z");
         platen.force = make_function(components, where);
-        Point<dim> elsewhere;
-        for (unsigned int d = 0; d < dim; ++d)
-          elsewhere[d] = .7 + .4 * d;
+        // What is no number at a later time shall not be found out then.
         for (unsigned int step = 0; step < n_load_steps(); ++step)
           {
             begin_load_step(step);
             for (unsigned int d = 0; d < dim; ++d)
-              if (platen.force->value(Point<dim>(), d) !=
-                  platen.force->value(elsewhere, d))
-                throw InputError(there +
-                                 ": a total force cannot depend on the place; "
-                                 "for one that is distributed use 'Traction'.");
+              platen.force->value(Point<dim>(), d);
           }
         begin_load_step(0);
 
@@ -501,6 +504,19 @@ namespace Friction
     present_step = step;
     for (const auto &function : functions_of_time)
       function->set_time(time());
+  }
+
+
+
+  template <int dim>
+  std::string
+  Scene<dim>::at_time() const
+  {
+    if (n_load_steps() == 1)
+      return "";
+    std::ostringstream text;
+    text << " at the time t = " << time();
+    return text.str();
   }
 
 
@@ -580,14 +596,10 @@ namespace Friction
     // makes its own; a mesh file that one of them cannot read is an error of
     // all. The copy at the end takes over this mesh's policy of refinement as
     // well, which therefore has to be the one that the given triangulation has.
-    if (parameters.scene.geometry == GeometryKind::rectangle)
-      {
-        double n_cells = 1.;
-        for (const unsigned int n : parameters.scene.subdivisions)
-          n_cells *= n;
-        check_that_mesh_fits(
-          dim, n_cells, 0, Compatibility::mpi_communicator(triangulation));
-      }
+    check_that_mesh_fits(dim,
+                         n_coarse_cells(parameters.scene),
+                         0,
+                         Compatibility::mpi_communicator(triangulation));
     Triangulation<dim> mesh(triangulation.get_mesh_smoothing());
     on_all_processes(Compatibility::mpi_communicator(triangulation),
                      [&]() { make_serial_mesh(mesh); });
@@ -784,6 +796,12 @@ namespace Friction
             "; if there should be, set '" + condition.obstacle_section() +
             "/Kind'.";
       }
+
+    if (n_contact_boundaries() == 0)
+      return "Warning: no part of the boundary may touch anything, so that "
+             "this "
+             "is plain elasticity; if there should be contact, set "
+             "'Contact/Boundary id' and 'Obstacle/Kind'.";
 
     double bound = std::numeric_limits<double>::max();
     for (const Material &material : the_materials.of_regions())

@@ -228,6 +228,16 @@ namespace Friction
       return "scene '" + parameters.name + "': ";
     }
 
+    /// " at the time t = 2", or nothing if there is no history.
+    std::string at_time() const;
+
+    /// As sentences begin about what may be otherwise at other times.
+    std::string
+    subject_at_time() const
+    {
+      return "scene '" + parameters.name + "'" + at_time() + ": ";
+    }
+
     /// What the body is made of.
     const Materials<dim> &
     materials() const

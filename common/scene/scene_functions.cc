@@ -74,7 +74,11 @@ namespace Friction
         sentence << " at (";
         for (unsigned int d = 0; d < dim; ++d)
           sentence << (d > 0 ? ", " : "") << p[d];
-        sentence << "), where a number "
+        sentence << ")";
+        // Zero also where there is no time.
+        if (function->get_time() != 0.)
+          sentence << " at the time " << function->get_time();
+        sentence << ", where a number "
                  << (smallest_here == 0. ? "from 0 up to" : "up to")
                  << " 1e30 is needed; correct it.";
         throw InputError(sentence.str());

@@ -105,8 +105,11 @@ class Input:
         r = self.random
         other = read(r.choice(self.scenes[self.dimension])).decode()
         sections = re.findall(r'^subsection .*?^end$', other, re.M | re.S)
-        self.scene += ('\n' + '\n'.join(r.sample(sections, min(len(sections),
-                                                r.randint(1, 3)))) + '\n').encode()
+        for section in r.sample(sections, min(len(sections), r.randint(1, 3))):
+            name = section.split('\n')[0]
+            own = re.compile('^%s$.*?^end$' % re.escape(name), re.M | re.S)
+            text = self.scene.decode('utf-8', 'replace')
+            self.scene = (own.sub('', text) + '\n' + section + '\n').encode()
         if r.random() < .3:
             self.change_values(1)
 
@@ -157,11 +160,9 @@ class Input:
         name = self.random.choice(self.meshes[self.dimension])
         data = read(name)
         name = os.path.basename(name)
-        self.scene = re.sub(rb'set Mesh file *=.*', b'set Mesh file = ' + name.encode(),
-                            self.scene)
-        if b'Mesh file' not in self.scene:
-            self.scene += ('\nsubsection Scene\n  set Geometry = mesh file\n  set Mesh '
-                           'file = %s\nend\n' % name).encode()
+        self.scene = re.sub(rb'set (Geometry|Mesh file) *=.*', b'', self.scene)
+        self.scene += ('\nsubsection Scene\n  set Geometry = mesh file\n  set Mesh '
+                       'file = %s\nend\n' % name).encode()
         return name, data
 
     def change_tags(self):

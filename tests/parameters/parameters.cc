@@ -154,6 +154,10 @@ main()
   check("no such statement", "subsection Scene\n  Size = 1, 1\nend\n");
   check("no choice", "subsection Solver\n  set Cycle = F\nend\n");
   check("no number", "subsection Material\n  set Poisson ratio = 1/3\nend\n");
+  check("entry twice",
+        "subsection Solver\n  set Cycle = V\nend\n"
+        "subsection Solver\n  set Cycle = W\nend\n");
+  check("override twice", good, {"Solver/Cycle=V", "Solver/Cycle=W"});
   check("unknown override", good, {"Solver/Cycles=V"});
   check("override without value", good, {"Solver/Cycle"});
   check("override without section", good, {"Cycle=V"});

@@ -90,11 +90,9 @@ tables=
 for scene in hertz:2d cylinder:3d; do
   name=${scene%:*}
   step=step-friction-${scene#*:}
-  { cat $step/scenes/$name.prm
-    printf 'subsection Output\n  set Times = false\nend\n'; } >$name.prm
-  if sh tests/support/scene.sh build/release/bin/$step $name.prm \
+  if sh tests/support/scene.sh build/release/bin/$step $step/scenes/$name.prm \
     tests/portability/$name.output "$PWD/$name-results" 1 20 numdiff true \
-    mpirun -np >$name.log 2>&1; then
+    mpirun -np Output/Times=false >$name.log 2>&1; then
     tables="$tables${tables:+, }$name"
   fi
 done

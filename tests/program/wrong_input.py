@@ -6,6 +6,8 @@ Usage: wrong_input.py PROGRAM_2D PROGRAM_3D
 A case is a scene with overrides, and what is expected of it:
 - error: exit status 2, one line on standard error that ends as a sentence does and
   in which a pattern is found, nothing on standard output, no file left behind;
+- later error: the same, but in a history, which has printed the load step, and may
+  have left files, complete ones, of those before;
 - warning: exit status 0, and the only lines that begin with "Warning:" are those of
   the patterns, once each;
 - good: exit status 0 without a warning.
@@ -280,6 +282,7 @@ def ceiling(**overrides):
 
 D, T, P, N = ('Boundary conditions/Displacement', 'Boundary conditions/Traction',
               'Boundary conditions/Pinned points', 'Contact/Contact normal')
+BARE = "in the end no node of 'Contact 2' is in contact .* does 'Obstacle 2/Normal'"
 B, G = 'Boundary conditions/Body force', 'Boundary conditions/Force'
 
 # (number in the list of findings that it belongs to, name, scene, overrides,
@@ -390,7 +393,16 @@ CASES = [
     (0, 'a force of a component that is free', 'pressed', {G: '0: free, -0.01'},
      'error', ["'Displacement' leaves component 2 free"]),
     (0, 'a force that varies', 'moved', {G: '3: free, -0.02*x'}, 'error',
+     ["a total force cannot depend on the place.*'0, -0.02.x' cannot be understood"]),
+    (0, 'a force that varies, but not between two points', 'moved',
+     {G: '3: free, -0.02 + 0*cos(x)', 'Scene/Definitions': 'r = x'}, 'error',
      ['a total force cannot depend on the place']),
+    (0, 'a force that varies by a definition', 'moved',
+     {G: '3: free, -r', 'Scene/Definitions': 'r = 0.02*(x < 1e-9)'}, 'error',
+     ['a total force cannot depend on the place']),
+    (0, 'a force that is no number later', 'moved',
+     {G: '3: free, -0.02/(1-t)', 'Load steps/Times': '0, 1'}, 'error',
+     ["Force': '0, -0.02/.1-t.' is -inf"]),
     (0, 'a force with a component too many', 'moved', {G: '3: free, -0.02, 0'}, 'error',
      ['needs 2 components, but has 3|2 components']),
     (0, 'two forces on a boundary', 'moved', {G: '3: free, -0.02; 3: 0, free'}, 'error',
@@ -407,6 +419,22 @@ CASES = [
     (0, 'a force on what is pinned', 'moved',
      {G: '3: free, -0.02', P: '(0, 1): free, -0.01'}, 'error',
      ['contradict each other in a vertex of boundary id 3']),
+    (0, 'a force that begins with zero', 'moved',
+     {D: '3: 0, -0.01', G: '3: free, -0.02*t', 'Load steps/Times': '0, 1',
+      'Refinement/Levels': '1'}, 'good', []),
+    (0, 'a force that begins with zero, away from the obstacle', 'moved',
+     {D: '3: 0, -0.06', G: '3: free, -0.02*t', 'Load steps/Times': '0, 1',
+      'Obstacle/Point': '0, -0.05'}, 'good', []),
+    (0, 'two forces that balance, and nothing else', 'moved',
+     {D: '2: 0, 0.01; 3: 0, -0.01', G: '2: free, 0.02; 3: free, -0.02',
+      'Obstacle/Kind': 'none', 'Contact/Boundary id': '-1',
+      'Contact/Friction coefficient': '0'}, 'error',
+     ["not held against a displacement in y direction: neither .*, and a boundary with a "
+      "given force does not;"]),
+    (0, 'two forces that balance, and a pin', 'moved',
+     {D: '2: 0, 0.01; 3: 0, -0.01', G: '2: free, 0.02; 3: free, -0.02', P: '(0,0.5): 0, 0',
+      'Scene/Subdivisions': '4, 2', 'Obstacle/Kind': 'none', 'Contact/Boundary id': '-1',
+      'Contact/Friction coefficient': '0'}, 'warning', ['plain elasticity']),
     (0, 'a force that pulls', 'moved', {G: '3: free, 0.02'}, 'error',
      ['cannot be reached.*component 2 on boundary 3']),
     (0, 'a force that friction cannot bear', 'moved', {G: '3: 0.01, -0.02'}, 'error',
@@ -489,8 +517,31 @@ CASES = [
      ["'Scene/Radius' is not used", "'Obstacle/Radius' is not used",
       "'Contact/Friction bound' is not used", "'Refinement/Marking' is not used",
       "'Output/Format' is not used"]),
+    (7, 'an entry twice', 'moved', {'Scene/Radius': '1\n  set Radius = 2'}, 'error',
+     [r"scene.prm:(\d+): 'Scene/Radius' has been set already, by scene.prm:\d+; remove"]),
+    (7, 'an entry twice, in two sections', 'moved',
+     {'Contact/Boundary id': '2\nend\nsubsection Contact\n  set Boundary id = 2'},
+     'error', ["'Contact/Boundary id' has been set already, by scene.prm"]),
+    (7, 'marking of everything', 'moved', {'Refinement/Marking': '0'}, 'error',
+     ["'0' is no value for 'Refinement/Marking'; give a number v such that 0 < v <= 1"]),
     (7, 'coefficient without its law', 'moved', {'Contact/Friction law': 'none'},
      'warning', ["'Contact/Friction coefficient' is not used"]),
+    (7, 'constants and definitions that nothing uses', 'moved',
+     {'Scene/Constants': 'a = 1; b = 2*a; push = 3', 'Scene/Definitions':
+      'r = x; s = r', T: '1: 0, -0.0001*push'}, 'warning',
+     ["'Scene/Constants' says what 'b' is, which nothing uses",
+      "'Scene/Definitions' says what 's' is, which nothing uses"]),
+    (7, 'entries of another algorithm', 'moved',
+     {'Solver/Outer damping': '0.5', 'Solver/Mixed outer iterations': '3',
+      'Solver/Outer tolerance': '1e-5', 'Solver/Total cycles': '100',
+      'Solver/Safeguards': 'false', 'Solver/Recombined steps': '2',
+      'Solver/Coarse correction': 'monotone'}, 'warning',
+     ["'Solver/Outer damping' is not used", "'Solver/Mixed outer iterations' is not used",
+      "'Solver/Outer tolerance' is not used", "'Solver/Total cycles' is not used",
+      "'Solver/Recombined steps' is not used"]),
+    (7, 'entries of Algorithm 2 that safeguards use', 'moved',
+     {'Solver/Outer tolerance': '1e-5', 'Solver/Maximum outer iterations': '20'}, 'good',
+     []),
     (7, 'coefficient in an expression', 'moved',
      {'Contact/Friction law': 'Tresca', 'Contact/Friction bound': '0.01*F'}, 'good',
      []),
@@ -554,6 +605,13 @@ CASES = [
      ['inside the obstacle before']),
     (10, 'no obstacle', 'moved', {'Obstacle/Kind': 'none'}, 'warning',
      ['there is no obstacle']),
+    (10, 'nothing that could touch', 'moved',
+     {'Obstacle/Kind': 'none', 'Contact/Boundary id': '-1'}, 'warning',
+     ['no part of the boundary may touch anything, so that this is plain elasticity']),
+    (10, 'traction where all is prescribed', 'moved', {T: '3: 0, -5; 1: 0.0001, 0'},
+     'warning', ["'Boundary conditions/Traction' does not move boundary 3"]),
+    (10, 'traction where a component is free', 'moved',
+     {D: '0: 0, free; 3: 0.001, -0.01', T: '0: 0, 0.0001'}, 'good', []),
     (10, 'polygon', 'mesh', mesh('polygon', **{'Refinement/Initial refinements': '1'}),
      'warning', ['edges of up to 22.6 degrees']),
     # 11. All the rest.
@@ -571,6 +629,12 @@ CASES = [
      'error', ['degrees of freedom']),
     (11, 'too many cells', 'moved', {'Scene/Subdivisions': '1000000, 100000'}, 'error',
      ['degrees of freedom']),
+    (11, 'too long a cylinder', 'pressed 3d', {
+        'Scene/Geometry': 'cylinder', 'Scene/Length': '1e9', T: '', D: '1: 0, 0, 0'},
+     'error', ["the coarse mesh would have 4e.10 degrees of freedom.*'Scene/Layers'"]),
+    (11, 'too long a half cylinder', 'pressed 3d', {
+        'Scene/Geometry': 'half cylinder', 'Scene/Length': '1e25', T: '',
+        D: '1: 0, 0, 0'}, 'error', ['the coarse mesh would have 6e.27 degrees']),
     (11, 'too deep a mesh', 'pressed 3d', {'Refinement/Levels': '25',
                                            'Refinement/Initial refinements': '15'},
      'error', ['degrees of freedom|refined more than']),
@@ -597,6 +661,16 @@ CASES = [
      {'Contact/Friction law': 'Tresca', 'Contact/Friction bound': '1, 2'}, 'error',
      ['several values']),
     (11, 'assignment', 'moved', {D: '3: x=0.01, -0.01'}, 'error', ["has a '=' in it"]),
+    (11, 'two comparisons in a row', 'moved',
+     {T: '1: (0.2<y<0.4 ? -0.001 : 0), 0'}, 'error',
+     [r"'\(0.2<y<0.4 . -0.001 : 0\)' has two comparisons in a row, .*; join them by "
+      "'&&'"]),
+    (11, 'two comparisons in a row in a definition', 'moved',
+     {'Scene/Definitions': 'inside = 0.2 <= y == 1'}, 'error',
+     ["'Scene/Definitions' of 'inside': '0.2 <= y == 1' has two comparisons"]),
+    (11, 'two comparisons that are joined', 'moved',
+     {T: '1: (0.2<y && y<=0.4 ? -0.001*(x>1) : (y>.8)*(y!=.9)*0.001), '
+         'if(y<.2, y>.1, y<.3)*0'}, 'good', []),
     (11, 'time without load steps', 'moved', {D: '3: 0.01*t, -0.01'}, 'error',
      ["'0.01.t, -0.01' cannot be understood"]),
     (11, 'times that do not increase', 'moved',
@@ -607,7 +681,10 @@ CASES = [
      ["'Load steps/Times': 'x' cannot be understood"]),
     (11, 'a size that depends on the time', 'moved',
      {'Load steps/Times': '0, 1', 'Scene/Size': '2 + t, 1'}, 'error',
-     ["'Scene/Size': '2 . t' cannot be understood"]),
+     ["'Scene/Size': '2 . t' cannot be understood; .*; the time t is none of them here"]),
+    (11, 'a pinned point that is moved in the course of time', 'pressed',
+     {'Load steps/Times': '0, 1', P: '(0, 1): 0.02*t, free'}, 'error',
+     ["points': '0.02.t' cannot be understood; .*; the time t is none of them here"]),
     (11, 'a region that depends on the time', 'moved',
      {'Load steps/Times': '0, 1', 'Material/Regions': 'where x < t: 2, 0.3'}, 'error',
      ["'x < t' cannot be understood"]),
@@ -622,14 +699,49 @@ CASES = [
     (11, 'load steps', 'moved',
      {'Load steps/Times': '0, 1/2, 2*a', 'Scene/Constants': 'a = 1',
       'Scene/Definitions': 'shift = 0.01*t', D: '3: shift, -0.01'}, 'good', []),
+    (11, 'loads that come later', 'pressed',
+     {'Load steps/Times': '0, 1', T: '3: 0, -0.01*t'}, 'later error',
+     ["scene 'scene' at the time t = 0: the body is not held .*, or let there be loads "
+      "that press it against an obstacle at each of the 'Load steps/Times'"]),
+    (11, 'a value that is no number later', 'pressed',
+     {'Load steps/Times': '1, 2', T: '3: 0, -0.01*sqrt(1.5 - t)', 'Output/Fields': 'false'},
+     'later error', ["sqrt.1.5 - t.' is not a number at .* at the time 2, where"]),
+    (11, 'a displacement into the obstacle later', 'moved',
+     {'Load steps/Times': '0, 1', D: '3: 0.01, -0.01; 0: 0, 0.01 - 0.02*t'}, 'later error',
+     ["at the time t = 1: the prescribed displacement of the node at"]),
+    (11, 'a force that cannot be reached later', 'moved',
+     {'Load steps/Times': '0, 1', G: '3: free, -0.02 + 0.03*t'}, 'later error',
+     ["scene 'scene' at the time t = 1: the forces of"]),
+    (11, 'an obstacle that moves along itself', 'moved',
+     {'Load steps/Times': '0, 1', 'Obstacle/Kind': 'surface',
+      'Scene/Definitions': 'road = 0.001*cos(9*(x - 0.1*t)) - 0.001',
+      'Obstacle/Function': 'y - road'}, 'warning',
+     ["'Obstacle/Function' moves with t, but slip is that of the body"]),
+    (11, 'an obstacle that moves without friction', 'moved',
+     {'Load steps/Times': '0, 1', 'Obstacle/Kind': 'surface',
+      'Contact/Friction coefficient': '0', 'Obstacle/Function': 'y - 0.001*t'}, 'good',
+     []),
     (11, 'a constant t without load steps', 'moved',
      {'Scene/Constants': 't = 1', D: '3: 0.01*t, -0.01'}, 'good', []),
     (11, 'tolerance below rounding', 'moved', {'Solver/Inner tolerance': '1e-25'},
      'good', []),
+    (11, 'an id of many digits', 'moved', {'Contact/Boundary id': '7' * 5000}, 'error',
+     ["'7+[.]+7+' is no boundary id"]),
+    (11, 'a long path', 'moved', {'Scene/Mesh file': 'x' * 5000}, 'error',
+     ["'Scene/Mesh file' is 'x+[.]+x+', but"]),
+    (11, 'a long name', 'moved', {'Scene/Constants': '%s = 1; %s = 2' % (2 * ('n' * 5000,))},
+     'error', ["says twice what 'n+[.]+n+' is"]),
+    (11, 'a long number', 'moved', {'Scene/Radius': '0' * 5000 + '1e31'},
+     'error',
+     ["'Scene/Radius' is 0+[.]+0+1e31, which is beyond 1e30"]),
     (11, 'negative id', 'moved', {'Contact/Boundary id': '-7'}, 'error',
      ['no boundary id']),
     # 12. Several contact boundaries.
-    (12, 'a second one', 'pressed', ceiling(), 'good', []),
+    (12, 'a second one that touches nothing', 'pressed', ceiling(), 'warning', [BARE]),
+    (12, 'two that touch', 'pressed', {
+        D: '2: 0, 0', 'Contact/Boundary id': '0', 'Obstacle/Normal': '-1, 0',
+        'Contact 2/Boundary id': '1', 'Obstacle 2/Kind': 'plane',
+        'Obstacle 2/Point': '2, 0', 'Obstacle 2/Normal': '1, 0'}, 'good', []),
     (12, 'a corner', 'moved', {
         D: '3: 0, -0.01', 'Contact 2/Boundary id': '1', 'Obstacle 2/Kind': 'plane',
         'Obstacle 2/Point': '2, 0', 'Obstacle 2/Normal': '1, 0'}, 'error',
@@ -637,7 +749,8 @@ CASES = [
     (12, 'a corner that is held', 'moved', {
         'Scene/Size': '2, 1', D: '3: 0, -0.01; 0: 0, 0', 'Contact 2/Boundary id': '0',
         'Obstacle 2/Kind': 'plane', 'Obstacle 2/Point': '-1, 0',
-        'Obstacle 2/Normal': '-1, 0'}, 'warning', ["of 'Contact 2' faces the obstacle"]),
+        'Obstacle 2/Normal': '-1, 0'}, 'warning',
+     ["of 'Contact 2' faces the obstacle", BARE]),
     (12, 'the same boundary', 'pressed', ceiling(**{'Contact 2/Boundary id': '2'}),
      'error', ["'Contact 2/Boundary id' is 2, as is that of 'Contact'"]),
     (12, 'a boundary that is not there', 'pressed',
@@ -650,7 +763,7 @@ CASES = [
      'warning', ["there is no obstacle for 'Contact 2'"]),
     (12, 'an obstacle on the wrong side', 'pressed',
      ceiling(**{'Obstacle 2/Normal': '0, -1'}), 'warning',
-     ["of 'Contact 2' faces the obstacle"]),
+     ["of 'Contact 2' faces the obstacle", BARE]),
     (12, 'number one', 'pressed', {'Contact 1/Boundary id': '3'}, 'error',
      ["there is no section 'Contact 1'; did you mean 'Contact'"]),
     (12, 'an entry that is not there', 'pressed', {'Contact 2/Friction': '3'}, 'error',
@@ -663,10 +776,11 @@ CASES = [
      ["'Contact 2/Friction coefficient': '2.f' cannot be understood"]),
     (12, 'coefficient above the bound', 'pressed',
      ceiling(**{'Contact 2/Friction coefficient': '7*F'}), 'warning',
-     ['friction 2.1 is above']),
+     ['friction 2.1 is above', BARE]),
     (12, 'what nothing uses', 'pressed', ceiling(**{
         'Obstacle 2/Radius': '3', 'Contact 2/Friction bound': '1'}), 'warning',
-     ["'Obstacle 2/Radius' is not used", "'Contact 2/Friction bound' is not used"]),
+     ["'Obstacle 2/Radius' is not used", "'Contact 2/Friction bound' is not used",
+      BARE]),
 ]
 
 
@@ -703,9 +817,9 @@ class Runner:
         number, name, scene, overrides, expected, patterns = case
         result = self.run(scene, overrides)
         problems = []
-        if result.returncode != (2 if expected == 'error' else 0):
+        if result.returncode != (2 if expected.endswith('error') else 0):
             problems.append('exit status %d' % result.returncode)
-        if expected == 'error':
+        if expected.endswith('error'):
             lines = result.stderr.splitlines()
             if len(lines) != 1 or not re.search(r'[.?]$', lines[0]):
                 problems.append('this is no single sentence')
@@ -714,9 +828,12 @@ class Runner:
             for pattern in patterns:
                 if not re.search(pattern, result.stderr):
                     problems.append('not found: ' + pattern)
-            if [l for l in result.stdout.splitlines() if not l.startswith('Warning:')]:
+            is_late = expected == 'later error'
+            said = [l for l in result.stdout.splitlines() if not l.startswith('Warning:')]
+            if said and not is_late:
                 problems.append('something on standard output')
-            left = [os.path.join(d, f) for d, _, fs in os.walk('results') for f in fs]
+            left = [os.path.join(d, f) for d, _, fs in os.walk('results') for f in fs
+                    if not is_late or '.part' in f]
             if left:
                 problems.append('files left: ' + ', '.join(left))
         else:
@@ -777,6 +894,10 @@ class Runner:
         result = self.run('moved', {'Obstacle/Point': '0, 0.02'}, '--check')
         self.verdict('--check warns', [] if result.returncode == 0 and
                      'inside the obstacle' in result.stdout else ['no warning'], result)
+        result = self.run('moved', {R: 'where x > 5: 2, .3'}, '--check')
+        self.verdict('--check warns of regions', [] if result.returncode == 0 and
+                     'no cell of the first mesh has the material of region 1' in
+                     result.stdout else ['no warning'], result)
         result = self.run('mesh', mesh('two'), '--check')
         self.verdict('--check finds errors', [] if result.returncode == 2 else
                      ['exit status'], result)
@@ -804,6 +925,9 @@ CASES += [
      ["no cell .* has the material of region 1 in 'Material/Regions'"]),
     (18, 'a condition that is none', 'moved', {R: 'where x >: 2, .3'}, 'error',
      ["'Material/Regions': 'x >' cannot be understood"]),
+    (18, 'a condition with two comparisons in a row', 'moved',
+     {R: 'where 0.5 < x < 1: 2, .3'}, 'error',
+     ["'Material/Regions': '0.5 < x < 1' has two comparisons in a row"]),
     (18, 'a condition without a value', 'moved', {R: 'where 1/(x-0.125): 2, .3'},
      'error', [r"Regions.*'1/\(x-0.125\)' is inf at \(0.125,"]),
     (18, 'a modulus is missing', 'moved', {R: 'where x > 1: 2'}, 'error',

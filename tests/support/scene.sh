@@ -9,7 +9,8 @@
 # RESULTS-1, energies to ten digits. A program that shares no code with the one that
 # is run, tests/verify/friction_verify.py, confirms the certificate of every level.
 #
-# Usage: scene.sh PROGRAM SCENE EXPECTED RESULTS N CYCLES NUMDIFF COMPARE MPIEXEC NUMPROC_FLAG
+# Usage: scene.sh PROGRAM SCENE EXPECTED RESULTS N CYCLES NUMDIFF COMPARE MPIEXEC \
+#          NUMPROC_FLAG [OVERRIDES...]
 program=$1
 scene=$2
 expected=$3
@@ -22,17 +23,18 @@ compare=$8
 mpiexec=$9
 shift 9
 numproc_flag=$1
+shift
 
 rm -rf "$results"
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 
 if [ "$n" -eq 1 ]; then
-  "$program" "$scene" "Output/Directory=$results" Output/Verification=true \
+  "$program" "$scene" "Output/Directory=$results" Output/Verification=true "$@" \
     >"$work/output" 2>&1
 else
   "$mpiexec" "$numproc_flag" "$n" "$program" "$scene" \
-    "Output/Directory=$results" Output/Verification=true >"$work/output" 2>&1
+    "Output/Directory=$results" Output/Verification=true "$@" >"$work/output" 2>&1
 fi
 status=$?
 cat "$work/output"

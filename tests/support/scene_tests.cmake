@@ -1,6 +1,6 @@
 # Every shipped scene of a step program runs in a test, on one process and on
-# several: NAME.prm.in is the shipped file, put in place of @scene_NAME@, and
-# after it what shortens the run.
+# several. What shortens the run is in NAME.overrides: lines like those of a command,
+# and comments.
 #
 # Not one of deal.II's own parameter file tests, since those would compare
 # numbers of cycles to the last one; BOUND is what they must not exceed.
@@ -8,14 +8,14 @@ function(add_scene_tests PROGRAM BOUND)
   file(GLOB _scenes CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${PROGRAM}/scenes/*.prm)
   foreach(_scene ${_scenes})
     get_filename_component(_name ${_scene} NAME_WE)
-    if(NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.prm.in OR
+    set(_overrides_file ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.overrides)
+    if(NOT EXISTS ${_overrides_file} OR
         NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.output)
       message(FATAL_ERROR "The scene ${_scene} has no test: write "
-        "${CMAKE_CURRENT_SOURCE_DIR}/${_name}.prm.in and ${_name}.output.")
+        "${_overrides_file} and ${_name}.output.")
     endif()
-    file(READ ${_scene} scene_${_name})
-    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${_scene})
-    configure_file(${_name}.prm.in ${_name}.prm @ONLY)
+    file(STRINGS ${_overrides_file} _overrides REGEX "^[^#]")
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${_overrides_file})
 
     foreach(_n 1 2 4)
       set(_test ${PROGRAM}/${_name})
@@ -25,14 +25,15 @@ function(add_scene_tests PROGRAM BOUND)
       add_test(NAME ${_test}
         COMMAND sh ${CMAKE_SOURCE_DIR}/tests/support/scene.sh
           $<TARGET_FILE:${PROGRAM}>
-          ${CMAKE_CURRENT_BINARY_DIR}/${_name}.prm
+          ${_scene}
           ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.output
           ${CMAKE_CURRENT_BINARY_DIR}/${_name}
           ${_n}
           ${BOUND}
           ${NUMDIFF_EXECUTABLE}
           $<TARGET_FILE:compare_histories>
-          ${DEAL_II_MPIEXEC} ${DEAL_II_MPIEXEC_NUMPROC_FLAG})
+          ${DEAL_II_MPIEXEC} ${DEAL_II_MPIEXEC_NUMPROC_FLAG}
+          ${_overrides})
       label_test(${_test} LABEL quick PROCESSES ${_n})
       if(_n EQUAL 1)
         set_tests_properties(${_test} PROPERTIES
