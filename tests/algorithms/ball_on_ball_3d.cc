@@ -26,8 +26,8 @@ main(int argc, char **argv)
     read_parameters(SCENES_3D_DIR "/ball-on-ball.prm", {size})));
   const double       R = 2. / 3, E = 1 / (1 - .3 * .3), start = .01;
 
-  double pressure_error = 0, least = 1e300, most = -1e300, largest_way = 0,
-         largest_force     = 0;
+  double pressure_error = 0, radius_error = 0, least = 1e300, most = -1e300,
+         largest_way = 0, largest_force = 0;
   unsigned int most_cycles = 0, n_steps = 0;
   bool         converged = true;
   const auto   add_step  = [&]() {
@@ -35,26 +35,31 @@ main(int argc, char **argv)
     converged = converged && nest.report().converged;
     most_cycles =
       std::max<unsigned int>(most_cycles, nest.report().cycles.size());
-    double P = 0, p = 0;
+    double P = 0, p = 0, area = 0;
     for (const ContactNode<3> &node : nest.discretization().contact())
       {
         const double force =
           -contact_force(node, nest.report().residual) * node.normal();
         P += force * -node.normal()[2];
         p = std::max(p, force / node.measure);
+        area += force > 0 ? node.measure : 0.;
       }
     const double a = std::cbrt(3 * P * R / (4 * E)), d = a * a / R;
     const double s =
       start - (*nest.scene().dirichlet_conditions()[0].platen->position)[2];
-    pressure_error = std::max(
+    // That of a disc of the same area as the nodes in contact stand for.
+    const double radius = std::sqrt(area / numbers::PI);
+    radius_error        = std::max(radius_error, std::abs(radius / a - 1));
+    pressure_error      = std::max(
       pressure_error, std::abs(p / (1.5 * P / (numbers::PI * a * a)) - 1));
     least         = std::min(least, (s - d) / P);
     most          = std::max(most, (s - d) / P);
     largest_way   = std::max(largest_way, s);
     largest_force = std::max(largest_force, P);
     if (argc > 1)
-      std::cout << "P " << P << ", a " << a << ", p " << p << ", s " << s
-                << ", d " << d << ", (s-d)/P " << (s - d) / P << std::endl;
+      std::cout << "P " << P << ", a " << a << ", measured " << radius << ", p "
+                << p << ", s " << s << ", d " << d << ", (s-d)/P "
+                << (s - d) / P << std::endl;
   };
 
   nest.begin();
@@ -73,6 +78,9 @@ main(int argc, char **argv)
               "the obstacle exerts the force of the platen");
   check_below(
     pressure_error, argc > 1 ? .005 : .04, "the largest pressure is Hertz's");
+  check_below(radius_error,
+              argc > 1 ? .02 : .05,
+              "the radius of the zone of contact is Hertz's, to a node");
   check_below((most - least) * largest_force / largest_way,
               argc > 1 ? .012 : .05,
               "the platen's way is Hertz's approach and a part in proportion");

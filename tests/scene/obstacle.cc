@@ -182,6 +182,60 @@ main()
       "straight to a rough plane");
   }
   {
+    // The same in space: a ball by its kind and by a formula that is no
+    // distance, and a road that is rough in both directions.
+    std::cout << "surfaces in space" << std::endl;
+    const Point<3> c(.3, -.2, -1.5);
+    const double   r = .7;
+    Obstacle<3>    ball;
+    ball.add({c, Tensor<1, 3>(), r, 1e300});
+    const auto surface = [&](const auto &function) {
+      Obstacle<3> obstacle;
+      obstacle.add(std::make_shared<const LevelSurface<3>>(
+        std::make_shared<const ScalarFunctionFromFunctionObject<3>>(function),
+        2.));
+      return obstacle;
+    };
+    const auto level      = surface([&](const Point<3> &p) {
+      return std::exp(p.distance_square(c)) - std::exp(r * r);
+    });
+    double     difference = 0;
+    for (double angle = .05; angle < 3.14; angle += .2)
+      for (double turn = 0; turn < 6.28; turn += .3)
+        for (const double along : {.9, 1.1, 2.})
+          {
+            const Tensor<1, 3> way({std::sin(angle) * std::cos(turn),
+                                    std::sin(angle) * std::sin(turn),
+                                    std::cos(angle)});
+            const Tensor<1, 3> side =
+              cross_product_3d(way, Tensor<1, 3>({0., 0., 1.}));
+            const Point<3>     p     = c + r * along * way;
+            const Tensor<1, 3> askew = -.96 * way + .28 * side / side.norm();
+            const double       gap   = ball.gap(p, askew);
+            difference               = std::max(
+              {difference,
+                             (level.normal(p) - ball.normal(p)).norm(),
+                             std::abs(level.gap(p, -way) - ball.gap(p, -way)),
+               std::isfinite(gap) ? std::abs(level.gap(p, askew) - gap)
+                                                : std::isfinite(level.gap(p, askew)) * 1.});
+          }
+    check_below(difference, 1e-9, "as by formulas for the ball");
+
+    const auto height = [](const double x, const double y) {
+      return .01 * std::cos(20. * x) + .02 * std::sin(10. * y);
+    };
+    const auto rough = surface(
+      [&](const Point<3> &p) { return 5. * (p[2] + 1. - height(p[0], p[1])); });
+    difference = 0;
+    for (double x = -1; x < 1; x += .07)
+      for (double y = -1; y < 1; y += .07)
+        difference = std::max(
+          difference,
+          std::abs(rough.gap(Point<3>(x, y, -.9), Tensor<1, 3>({0., 0., -1.})) -
+                   (.1 - height(x, y))));
+    check_below(difference, 1e-12, "gaps over a rough plane in space");
+  }
+  {
     std::cout << "rotated" << std::endl;
     std::ofstream("scene.prm") << "subsection Scene\n"
                                   "  set Rotation angle = 90\n"

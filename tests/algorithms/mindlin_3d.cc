@@ -1,0 +1,89 @@
+// The scene mindlin in three dimensions against Cattaneo and Mindlin: the
+// radius c of the zone of stick, that of a disc of the same area, is a (1 -
+// Q/(F P))^(1/3) where the ball is dragged first, and a (1 - |Q - Q_turn|/(2 F
+// P))^(1/3) where the drag is taken back. The slip is along the drag, and the
+// force across it is nothing by symmetry.
+
+#include <common/algorithms/nested_iteration.h>
+#include <common/contact/contact_forces.h>
+
+#include <iostream>
+
+#include <tests/support/check.h>
+#include <tests/support/discretized.h>
+
+using namespace Tests;
+
+namespace
+{
+  struct Step
+  {
+    Tensor<1, 3> force; ///< of the plane on the ball
+    double       a = 0, c = 0;
+  };
+
+
+
+  Step
+  quantities(const NestedIteration<3> &nest)
+  {
+    Step        step;
+    double      contact_area = 0, stick_area = 0;
+    const auto &contact = nest.discretization().contact();
+    for (unsigned int p = 0; p < contact.size(); ++p)
+      if (nest.state().in_contact(p))
+        {
+          step.force += contact_force(contact[p], nest.report().residual);
+          contact_area += contact[p].measure;
+          stick_area += nest.state().sticks(p) ? contact[p].measure : 0.;
+        }
+    step.a = std::sqrt(contact_area / numbers::PI);
+    step.c = std::sqrt(stick_area / numbers::PI);
+    return step;
+  }
+} // namespace
+
+int
+main(int argc, char **argv)
+{
+  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  // Another mesh than that of the test, for more digits.
+  const std::string  size = argc > 1 ? argv[1] : "Refinement/Maximum dofs=5000";
+  NestedIteration<3> nest(
+    without_safeguards(read_parameters(SCENES_3D_DIR "/mindlin.prm", {size})));
+  nest.begin();
+  do
+    nest.solve();
+  while (nest.advance());
+
+  std::vector<Step> steps     = {quantities(nest)};
+  bool              converged = nest.report().converged;
+  while (nest.begin_next_load_step())
+    {
+      converged = nest.solve().converged && converged;
+      steps.push_back(quantities(nest));
+    }
+  check(converged && steps.size() == 5, "five steps");
+
+  const double F     = .3;
+  double       error = 0, across = 0, smallest = 1;
+  for (unsigned int i = 1; i < steps.size(); ++i)
+    {
+      const double P    = steps[i].force[2];
+      const double from = i <= 2 ? 0. : steps[2].force[0];
+      const double c    = std::cbrt(
+        1 - std::abs(steps[i].force[0] - from) / ((i <= 2 ? 1 : 2) * F * P));
+      if (argc > 1)
+        std::cout << "t = " << i << ": c/a " << steps[i].c / steps[i].a
+                  << ", closed form " << c << std::endl;
+      error    = std::max(error, std::abs(steps[i].c / steps[i].a - c));
+      across   = std::max(across, std::abs(steps[i].force[1]) / (F * P));
+      smallest = std::min(smallest, c);
+    }
+  check(smallest < .75,
+        "the zone of stick shrinks to less than three quarters");
+  check_below(error,
+              argc > 1 ? .015 : .05,
+              "c/a is that of Cattaneo and Mindlin, to a node");
+  check_below(across, 1e-6, "no force across the drag");
+}
