@@ -23,6 +23,7 @@ The inputs of findings are saved in the folder FOUND, one folder for each. Exit 
 corpus beside this file, and tried by --replay.
 """
 import argparse
+import json
 import os
 import random
 import re
@@ -34,11 +35,21 @@ import time
 
 from inputs import Input, read, write
 
-TIMEOUT = 60
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.dirname(os.path.dirname(HERE))
 # Small enough to be many.
 LIMITS = ['Refinement/Levels=1', 'Refinement/Maximum dofs=2000', 'Output/Times=false',
           'Solver/Total cycles=300', 'Solver/Maximum cycles=60',
           'Solver/Maximum outer iterations=10', 'Output/Directory=results']
+
+
+def sanitizer_options():
+    """What the tests of the sanitized programs set; nothing to other programs."""
+    with open(os.path.join(ROOT, 'CMakePresets.json')) as f:
+        presets = json.load(f)['testPresets']
+    return {name: value.replace('${sourceDir}', ROOT) for preset in presets
+            if preset['name'] == 'sanitize'
+            for name, value in preset['environment'].items()}
 
 
 class Fuzzer:
@@ -50,8 +61,7 @@ class Fuzzer:
                    3: os.path.abspath(arguments.scenes_3d)}
 
         # The scenes of a page have meshes, in three dimensions, too.
-        page = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..',
-                            'doc', 'own-scene')
+        page = os.path.join(ROOT, 'doc', 'own-scene')
 
         def files(dimension, ending):
             return sorted(
@@ -61,6 +71,7 @@ class Fuzzer:
                  if f.endswith(ending) and ('-3d' in f) == (dimension == 3)])
         self.scenes = {d: files(d, '.prm') for d in (2, 3)}
         self.meshes = {d: files(d, '.msh') for d in (2, 3)}
+        self.environment = {**sanitizer_options(), **os.environ}
         self.found = os.path.abspath(arguments.found)
         self.n_inputs = 0
         self.findings = {}
@@ -73,7 +84,8 @@ class Fuzzer:
             command = [launcher, flag, n] + command
         try:
             done = subprocess.run(command, stdout=subprocess.PIPE,
-                                  stderr=subprocess.PIPE, timeout=TIMEOUT)
+                                  stderr=subprocess.PIPE, timeout=60,
+                                  env=self.environment)
             return (done.returncode, done.stdout.decode('utf-8', 'replace'),
                     done.stderr.decode('utf-8', 'replace'))
         except subprocess.TimeoutExpired:
