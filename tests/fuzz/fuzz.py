@@ -2,14 +2,18 @@
 programs: whatever they are, a run has to end with a result or with a sentence.
 
 Usage: fuzz.py PROGRAM_2D PROGRAM_3D SCENES_2D SCENES_3D FOUND
-         [--seconds N] [--inputs N] [--seed N] [--launcher 'MPIEXEC FLAG N']
-         [--verify SCRIPT] [--replay FOLDER]
+         [--seconds N] [--inputs N] [--seed N] [--timeout N]
+         [--processes N ...] [--launcher 'MPIEXEC FLAG'] [--verify SCRIPT]
+         [--replay FOLDER]
 
-Each input is made from a number, its seed, which is printed with what is found and
-with which it can be made again (--seed N --seconds 0 tries that one only). An input
+Inputs are tried for so many seconds, and as many inputs at most, on each of the numbers
+of PROCESSES, one after the other; on one process if none are given. Each input is made
+from a number, its seed, which is printed with what is found and with which it can be
+made again (--seed N --seconds 0 tries that one only). The first one is that of the
+option or, so that other inputs are tried each time, from the time of the clock. An input
 is a finding if the run
 - ends by a signal, or with an exit status of its own that says "an error of the
-  program" (3), or does not end,
+  program" (3), or does not end within the seconds of --timeout,
 - prints a stack trace, or a report of a sanitizer,
 - refuses the input without a message, or with one of more than three lines or a
   thousand characters,
@@ -28,6 +32,7 @@ import os
 import random
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -52,6 +57,20 @@ def sanitizer_options():
             for name, value in preset['environment'].items()}
 
 
+def stop(process):
+    """A launcher ends its processes if it is asked to, and cannot if it is killed."""
+    process.terminate()
+    try:
+        process.wait(10)
+    except subprocess.TimeoutExpired:
+        pass
+    try:
+        os.killpg(process.pid, signal.SIGKILL)
+    except ProcessLookupError:
+        pass
+    process.wait()
+
+
 class Fuzzer:
     def __init__(self, arguments):
         self.a = arguments
@@ -72,26 +91,42 @@ class Fuzzer:
         self.scenes = {d: files(d, '.prm') for d in (2, 3)}
         self.meshes = {d: files(d, '.msh') for d in (2, 3)}
         self.environment = {**sanitizer_options(), **os.environ}
+        # Where MPI has files of its own.
+        self.temporary = tempfile.mkdtemp()
         self.found = os.path.abspath(arguments.found)
+        self.n_processes = 1
         self.n_inputs = 0
         self.findings = {}
         self.outcomes = {}
 
     def run(self, dimension, arguments):
+        """Status, or None if it does not end, and what it has printed."""
         command = [self.programs[dimension]] + arguments
-        if self.a.launcher:
-            launcher, flag, n = self.a.launcher.split()
-            command = [launcher, flag, n] + command
-        try:
-            done = subprocess.run(command, stdout=subprocess.PIPE,
-                                  stderr=subprocess.PIPE, timeout=60,
-                                  env=self.environment)
-            return (done.returncode, done.stdout.decode('utf-8', 'replace'),
-                    done.stderr.decode('utf-8', 'replace'))
-        except subprocess.TimeoutExpired:
-            return (None, '', '')
-        except ValueError as error:
-            return (2, '', 'x: %s.' % error)  # no such argument can be given
+        environment = dict(self.environment, TMPDIR=self.temporary)
+        if self.n_processes > 1:
+            command = self.a.launcher.split() + [str(self.n_processes)] + command
+        else:
+            # Without a daemon, which would outlive the program.
+            environment['OMPI_MCA_ess_singleton_isolated'] = '1'
+        # Not pipes, which what is left of a run that was killed might hold open.
+        with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+            try:
+                process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=out,
+                                           stderr=err, env=environment,
+                                           start_new_session=True)
+            except (ValueError, OSError) as error:
+                return (2, '', 'x: %s.' % error)  # no such argument can be given
+            try:
+                process.wait(self.a.timeout)
+                status = process.returncode
+            except subprocess.TimeoutExpired:
+                stop(process)
+                status = None
+            texts = []
+            for file in (out, err):
+                file.seek(0)
+                texts.append(file.read(1000000).decode('utf-8', 'replace'))
+        return (status, *texts)
 
     def problems(self, status, out, err):
         text = out + err
@@ -106,7 +141,7 @@ class Fuzzer:
             return 'error of the program'
         if status == 2:
             lines = [l for l in err.splitlines() if l.strip()]
-            if self.a.launcher:
+            if self.n_processes > 1:
                 # The launcher has something to say, too.
                 lines = [l for l in lines if l.startswith('step-friction')]
             usage = any(l.startswith('Usage') for l in lines)
@@ -135,7 +170,7 @@ class Fuzzer:
                 return  # what is to be changed is not there
             self.n_inputs += 1
             limits = list(LIMITS)
-            verify = (self.a.verify and not self.a.launcher and
+            verify = (self.a.verify and self.n_processes == 1 and
                       random.Random(seed).random() < .5)
             if verify:
                 limits.append('Output/Verification=true')
@@ -195,17 +230,29 @@ class Fuzzer:
             os.chdir(here)
             shutil.rmtree(work, ignore_errors=True)
 
+    def try_inputs(self, seed):
+        """On the present number of processes, for the time given; returns the next
+        seed."""
+        begin, n_before = time.time(), self.n_inputs
+        while True:
+            self.try_seed(seed)
+            seed += 1
+            if (time.time() - begin >= self.a.seconds or
+                    self.n_inputs - n_before == self.a.inputs):
+                return seed
+
     def main(self):
-        begin, seed = time.time(), self.a.seed
+        seed = self.a.seed
         if self.a.replay:
             for name in sorted(os.listdir(self.a.replay)):
                 self.replay(os.path.abspath(os.path.join(self.a.replay, name)))
         else:
-            self.try_seed(seed)
-        while (not self.a.replay and time.time() - begin < self.a.seconds and
-               (self.a.inputs is None or self.n_inputs < self.a.inputs)):
-            seed += 1
-            self.try_seed(seed)
+            if seed is None:
+                # So many that no other run comes to the same ones.
+                seed = int(time.time()) * 100
+            print('The first seed is %d.' % seed, flush=True)
+            for self.n_processes in self.a.processes:
+                seed = self.try_inputs(seed)
         print('%d inputs, of which %s' % (self.n_inputs, ', '.join(
             '%d ended with status %s' % (n, s) for s, n in sorted(
                 self.outcomes.items(), key=str))))
@@ -222,10 +269,20 @@ if __name__ == '__main__':
     for name in ('program_2d', 'program_3d', 'scenes_2d', 'scenes_3d', 'found'):
         parser.add_argument(name)
     parser.add_argument('--seconds', type=float, default=60.)
-    parser.add_argument('--seed', type=int, default=1)
+    parser.add_argument('--seed', type=int)
+    parser.add_argument('--timeout', type=float, default=60.)
+    parser.add_argument('--processes', type=int, nargs='+', default=[1])
     parser.add_argument('--launcher', help='command that starts the programs on '
-                        'several processes, with its arguments')
+                        'several processes, but for their number')
     parser.add_argument('--inputs', type=int)
     parser.add_argument('--verify')
     parser.add_argument('--replay')
-    sys.exit(Fuzzer(parser.parse_args()).main())
+    options = parser.parse_args()
+    if max(options.processes) > 1 and not options.launcher:
+        parser.error('several processes need a --launcher')
+    fuzzer = Fuzzer(options)
+    try:
+        status = fuzzer.main()
+    finally:
+        shutil.rmtree(fuzzer.temporary, ignore_errors=True)
+    sys.exit(status)
