@@ -15,12 +15,16 @@ is a finding if the run
 - ends by a signal, or with an exit status of its own that says "an error of the
   program" (3), or does not end within the seconds of --timeout,
 - prints a stack trace, or a report of a sanitizer,
-- refuses the input without a message, or with one of more than three lines or a
-  thousand characters,
-- prints "nan" or "inf" in the table of a run with exit status 0,
-- leaves files that are not finished,
+- refuses the input (exit status 2) without a message, or with one of more than three
+  lines or a thousand characters, or that does not end like a sentence, or of several
+  processes; or does not converge (1) without saying so,
+- prints "nan" or "inf" in the table of a run with exit status 0, or leaves no results,
+- refuses the input before a level has been solved, and leaves other files in its
+  directory than there were; or leaves files there that are not finished, its lock, a
+  list of files that are not there, or anything elsewhere; or anything after --check,
 - says that it has solved the problem, and the certificate is not confirmed by
-  SCRIPT, a second program that reads what was written.
+  SCRIPT, a second program that reads what was written; that is done for half of the
+  inputs.
 
 The inputs of findings are saved in the folder FOUND, one folder for each. Exit status
 1 if there were any. What was found once, and has been mended, is kept in the folder
@@ -46,6 +50,23 @@ ROOT = os.path.dirname(os.path.dirname(HERE))
 LIMITS = ['Refinement/Levels=1', 'Refinement/Maximum dofs=2000', 'Output/Times=false',
           'Solver/Total cycles=300', 'Solver/Maximum cycles=60',
           'Solver/Maximum outer iterations=10', 'Output/Directory=results']
+
+
+def rows(out):
+    """The rows of the table that is printed."""
+    return [l.split() for l in out.splitlines() if re.match(r' *\d+ +\d+ ', l)]
+
+
+def contents(folder, outside=False):
+    """Of all files of results, or of all other files: their names and what is in
+    them."""
+    found = {}
+    for d, _, files in os.walk(folder):
+        for f in files:
+            name = os.path.relpath(os.path.join(d, f), folder)
+            if name.startswith('results' + os.sep) != outside:
+                found[name] = read(os.path.join(d, f))
+    return found
 
 
 def sanitizer_options():
@@ -95,7 +116,12 @@ class Fuzzer:
         self.temporary = tempfile.mkdtemp()
         self.found = os.path.abspath(arguments.found)
         self.n_processes = 1
-        self.n_inputs = 0
+        self.n_inputs = self.n_verified = 0
+        if arguments.verify and subprocess.run(
+                [sys.executable, '-B', arguments.verify, '--help'],
+                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode != 0:
+            print('Certificates are not verified: %s cannot be run.' % arguments.verify)
+            arguments.verify = None
         self.findings = {}
         self.outcomes = {}
 
@@ -128,36 +154,100 @@ class Fuzzer:
                 texts.append(file.read(1000000).decode('utf-8', 'replace'))
         return (status, *texts)
 
-    def problems(self, status, out, err):
-        text = out + err
+    def message_problem(self, err):
+        """What is wrong with how an input has been refused."""
+        if self.n_processes > 1:
+            # The launcher has something to say, too.
+            err = re.sub(r'^-{20,}\n.*?^-{20,}$', '', err, flags=re.M | re.S)
+        lines = [l for l in err.splitlines() if l.strip()]
+        if not lines:
+            return 'no message'
+        if any(l.startswith('Usage') for l in lines):
+            return None
+        if len(lines) > 3 or sum(map(len, lines)) > 1000:
+            return 'long message'
+        if not re.search(r'[.?)]$', lines[-1].rstrip()):
+            return 'no sentence'
+        if sum(bool(re.match(r'step-friction-\dd: ', l)) for l in lines) > 1:
+            return 'message of several processes'
+        return None
+
+    def file_problem(self, arguments, status, out, before, after):
+        """What is wrong with the files that a run has left, given those before."""
+        if contents(after, outside=True) != contents(before, outside=True):
+            return 'files elsewhere'
+        old, new = contents(before), contents(after)
+        if any(re.search(r'\.part\b|/\.lock$|/\.writable-', name) for name in new):
+            return 'half a file'
+        if '--check' in arguments:
+            return 'files of a check' if (new != old or os.path.isdir(
+                os.path.join(after, 'results')) != os.path.isdir(
+                    os.path.join(before, 'results'))) else None
+        # As long as no level has been solved, everything is as it was. A run that is
+        # continued prints the rows of levels before again.
+        known = [int(m.group(1)) for m in
+                 (re.match(r'results/checkpoint-(\d+)/', name) for name in old) if m]
+        n_repeated = min(known, default=0) if '--restart' in arguments else 0
+        if status == 2 and len(rows(out)) <= n_repeated and new != old:
+            return 'files of a run that was refused'
+        if status == 0 and 'results/history.h5' not in new:
+            return 'no results'
+        for name, data in new.items():
+            if name.endswith(('.pvd', '.pvtu', '.xdmf')) and data != old.get(name):
+                listed = re.findall(rb'(?:file|Source)="([^"]*)"|([\w.-]+\.h5):', data)
+                if any('results/' + (a or b).decode() not in new for a, b in listed):
+                    return 'files that are listed and not there'
+        return None
+
+    def problem_of(self, arguments, result, before, after):
+        """What is wrong with a run, or nothing: BEFORE and AFTER are folders in which it
+        finds and leaves files."""
+        status, out, err = result
+        if re.search(r'Stacktrace|Sanitizer|runtime error:|terminate called', out + err):
+            return 'stack trace or sanitizer'
         if status is None:
             return 'does not end'
         if status < 0 or status > 3:
             return 'signal or status %d' % status
-        if re.search(r'Stacktrace|AddressSanitizer|runtime error:|terminate called',
-                     text):
-            return 'stack trace or sanitizer'
         if status == 3:
             return 'error of the program'
-        if status == 2:
-            lines = [l for l in err.splitlines() if l.strip()]
-            if self.n_processes > 1:
-                # The launcher has something to say, too.
-                lines = [l for l in lines if l.startswith('step-friction')]
-            usage = any(l.startswith('Usage') for l in lines)
-            if not lines:
-                return 'no message'
-            if not usage and (len(lines) > 3 or sum(map(len, lines)) > 1000):
-                return 'long message'
-            if not re.search(r'[.?)]$', lines[-1].rstrip()) and not usage:
-                return 'no sentence'
-        if status == 0 and re.search(r'\b-?(nan|inf)\b',
-                                     ' '.join(l for l in out.splitlines()
-                                              if re.match(r' *\d', l))):
+        if status == 1 and not re.search('^No convergence on level', out, re.M):
+            return 'no convergence without a word'
+        if status == 0 and any(re.search(r'\b(nan|inf)\b', ' '.join(row))
+                               for row in rows(out)):
             return 'nan in a table'
-        if any('.part' in f for _, _, fs in os.walk('results') for f in fs):
-            return 'half a file'
-        return None
+        return ((self.message_problem(err) if status == 2 else None) or
+                self.file_problem(arguments, status, out, before, after))
+
+    def verify(self, arguments, result):
+        """Whether the certificate is confirmed, if the run has one and wrote what that
+        takes; what the second program says is added to the result."""
+        if (not self.a.verify or result[0] != 0 or '--check' in arguments or
+                'Output/Verification=true' not in arguments):
+            return None, result
+        self.n_verified += 1
+        try:
+            done = subprocess.run([sys.executable, '-B', self.a.verify, 'results'],
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                  timeout=self.a.timeout)
+            status, text = done.returncode, done.stdout.decode('utf-8', 'replace')
+        except subprocess.TimeoutExpired:
+            status, text = None, ''
+        problem = {0: None, 1: 'certificate refuted'}.get(status, 'no verdict')
+        return problem, (result[0], result[1], result[2] + text)
+
+    def examine(self, dimension, arguments):
+        """Runs the input in the present folder; returns what is wrong, or nothing, and
+        the result."""
+        before = os.path.join(self.temporary, 'before')
+        shutil.rmtree(before, ignore_errors=True)
+        shutil.copytree('.', before)
+        result = self.run(dimension, arguments)
+        problem = self.problem_of(arguments, result, before, '.')
+        if problem is None:
+            problem, result = self.verify(arguments, result)
+        self.outcomes[result[0]] = self.outcomes.get(result[0], 0) + 1
+        return problem, result
 
     def try_seed(self, seed):
         work = tempfile.mkdtemp()
@@ -170,9 +260,7 @@ class Fuzzer:
                 return  # what is to be changed is not there
             self.n_inputs += 1
             limits = list(LIMITS)
-            verify = (self.a.verify and self.n_processes == 1 and
-                      random.Random(seed).random() < .5)
-            if verify:
+            if random.Random(seed).random() < .5:
                 limits.append('Output/Verification=true')
             arguments = ['scene.prm'] + case.options + limits
             if case.restarts:
@@ -184,17 +272,7 @@ class Fuzzer:
                     write(name, case.change_bytes(read(name)))
                     arguments.append('Refinement/Levels=2')
                     arguments.append('--restart')
-            result = self.run(case.dimension, arguments)
-            problem = self.problems(*result)
-            if problem is None and verify and result[0] == 0 and os.path.exists(
-                    'results/history.h5'):
-                done = subprocess.run([sys.executable, self.a.verify, 'results'],
-                                      stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-                if done.returncode != 0:
-                    problem = ('certificate refuted' if done.returncode == 1
-                               else 'no verdict')
-                    result = (result[0], result[1], done.stdout.decode())
-            self.outcomes[result[0]] = self.outcomes.get(result[0], 0) + 1
+            problem, result = self.examine(case.dimension, arguments)
             if problem:
                 self.findings.setdefault(problem, []).append(seed)
                 print('seed %d, %dD: %s' % (seed, case.dimension, problem), flush=True)
@@ -218,10 +296,9 @@ class Fuzzer:
             shutil.copytree(folder, os.path.join(work, 'case'))
             os.chdir(os.path.join(work, 'case'))
             arguments = read('arguments').decode().split('\n')
-            result = self.run(3 if '3d' in os.path.basename(folder) else 2, arguments)
-            problem = self.problems(*result)
+            problem, result = self.examine(
+                3 if '3d' in os.path.basename(folder) else 2, arguments)
             self.n_inputs += 1
-            self.outcomes[result[0]] = self.outcomes.get(result[0], 0) + 1
             if problem:
                 self.findings.setdefault(problem, []).append(os.path.basename(folder))
                 print('%s: %s' % (folder, problem))
