@@ -26,9 +26,13 @@ is a finding if the run
   SCRIPT, a second program that reads what was written; that is done for half of the
   inputs.
 
-The inputs of findings are saved in the folder FOUND, one folder for each. Exit status
-1 if there were any. What was found once, and has been mended, is kept in the folder
-corpus beside this file, and tried by --replay.
+Exit status 1 if there were any. Inputs of findings, up to 20 of each kind, are saved in
+the folder FOUND, a folder for each: the files as they were before the run, checkpoints
+among them, in case.json the seed as a name, the dimension, the number of processes and the
+arguments, in output what the run has printed, and in left the results that it has left.
+With --replay such a folder, or each folder in the one that is given, is tried in the
+place of new inputs. What was found once, and has been mended, is kept, without output
+and left, in the folder corpus beside this file.
 """
 import argparse
 import json
@@ -46,6 +50,8 @@ from inputs import Input, read, write
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
+# Of each kind of finding.
+MOST_SAVED = 20
 # Small enough to be many.
 LIMITS = ['Refinement/Levels=1', 'Refinement/Maximum dofs=2000', 'Output/Times=false',
           'Solver/Total cycles=300', 'Solver/Maximum cycles=60',
@@ -236,18 +242,40 @@ class Fuzzer:
         problem = {0: None, 1: 'certificate refuted'}.get(status, 'no verdict')
         return problem, (result[0], result[1], result[2] + text)
 
-    def examine(self, dimension, arguments):
-        """Runs the input in the present folder; returns what is wrong, or nothing, and
-        the result."""
+    def examine(self, case):
+        """Runs a case in the present folder. What is found is printed and saved."""
         before = os.path.join(self.temporary, 'before')
         shutil.rmtree(before, ignore_errors=True)
         shutil.copytree('.', before)
-        result = self.run(dimension, arguments)
+        arguments = case['arguments']
+        result = self.run(case['dimension'], arguments)
         problem = self.problem_of(arguments, result, before, '.')
         if problem is None:
             problem, result = self.verify(arguments, result)
         self.outcomes[result[0]] = self.outcomes.get(result[0], 0) + 1
+        if problem:
+            self.add_finding(case, problem, result, before)
         return problem, result
+
+    def add_finding(self, case, problem, result, before):
+        print('%s, %dD, %d process%s: %s' % (
+            case['name'], case['dimension'], case['processes'],
+            'es' * (case['processes'] > 1), problem), flush=True)
+        self.findings.setdefault(problem, []).append(case['name'])
+        if self.a.replay:
+            print('\n'.join(result[1:])[:2000])
+            return
+        if len(self.findings[problem]) > MOST_SAVED:
+            return
+        folder = os.path.join(self.found, '%dd-%s-%s' % (
+            case['dimension'], re.sub(r'\W+', '-', problem), case['name']))
+        shutil.rmtree(folder, ignore_errors=True)
+        shutil.copytree(before, folder)
+        with open(os.path.join(folder, 'case.json'), 'w') as f:
+            json.dump(case, f, indent=1)
+        write(os.path.join(folder, 'output'), ('status %s\n%s\n%s' % result).encode())
+        if os.path.isdir('results'):
+            shutil.copytree('results', os.path.join(folder, 'left'))
 
     def try_seed(self, seed):
         work = tempfile.mkdtemp()
@@ -255,54 +283,49 @@ class Fuzzer:
         try:
             os.chdir(work)
             try:
-                case = Input(seed, self.scenes, self.meshes)
+                made = Input(seed, self.scenes, self.meshes)
             except (ValueError, IndexError):
                 return  # what is to be changed is not there
             self.n_inputs += 1
             limits = list(LIMITS)
             if random.Random(seed).random() < .5:
                 limits.append('Output/Verification=true')
-            arguments = ['scene.prm'] + case.options + limits
-            if case.restarts:
-                self.run(case.dimension, arguments + ['Output/Checkpoint=true'])
+            case = {'name': str(seed), 'dimension': made.dimension,
+                    'processes': self.n_processes,
+                    'arguments': ['scene.prm'] + made.options + limits}
+            if made.restarts:
+                self.run(case['dimension'], case['arguments'] +
+                         ['Output/Checkpoint=true'])
                 files = [os.path.join(d, f) for d, _, fs in os.walk('results')
                          for f in fs if 'checkpoint' in d]
                 if files:
-                    name = case.random.choice(sorted(files))
-                    write(name, case.change_bytes(read(name)))
-                    arguments.append('Refinement/Levels=2')
-                    arguments.append('--restart')
-            problem, result = self.examine(case.dimension, arguments)
-            if problem:
-                self.findings.setdefault(problem, []).append(seed)
-                print('seed %d, %dD: %s' % (seed, case.dimension, problem), flush=True)
-                folder = os.path.join(self.found, '%s-%d' % (
-                    re.sub(r'\W+', '-', problem), seed))
-                shutil.rmtree(folder, ignore_errors=True)
-                shutil.copytree(work, folder)
-                write(os.path.join(folder, 'arguments'), '\n'.join(arguments).encode())
-                write(os.path.join(folder, 'output'),
-                      ('status %s\n%s\n%s' % result).encode())
+                    name = made.random.choice(sorted(files))
+                    write(name, made.change_bytes(read(name)))
+                    case['arguments'] += ['Refinement/Levels=2', '--restart']
+            self.examine(case)
         finally:
             os.chdir(here)
             shutil.rmtree(work, ignore_errors=True)
 
     def replay(self, folder):
-        """Runs a saved input: its files, the program's dimension in the folder's name,
-        and the arguments, a line each, in the file of that name."""
+        """Runs a case that has been saved."""
+        with open(os.path.join(folder, 'case.json')) as f:
+            case = json.load(f)
+        if case['processes'] > 1 and not self.a.launcher:
+            print('%s: not tried without a launcher' % folder)
+            return
+        case['name'] = os.path.basename(folder)
+        self.n_processes = case['processes']
         work = tempfile.mkdtemp()
         here = os.getcwd()
         try:
-            shutil.copytree(folder, os.path.join(work, 'case'))
-            os.chdir(os.path.join(work, 'case'))
-            arguments = read('arguments').decode().split('\n')
-            problem, result = self.examine(
-                3 if '3d' in os.path.basename(folder) else 2, arguments)
+            shutil.copytree(folder, work, dirs_exist_ok=True,
+                            ignore=shutil.ignore_patterns('case.json', 'output', 'left'))
+            os.chdir(work)
             self.n_inputs += 1
-            if problem:
-                self.findings.setdefault(problem, []).append(os.path.basename(folder))
-                print('%s: %s' % (folder, problem))
-                print('\n'.join(result[1:])[:2000])
+            problem, result = self.examine(case)
+            if problem is None:
+                print('%s: status %s' % (case['name'], result[0]))
         finally:
             os.chdir(here)
             shutil.rmtree(work, ignore_errors=True)
@@ -321,8 +344,12 @@ class Fuzzer:
     def main(self):
         seed = self.a.seed
         if self.a.replay:
-            for name in sorted(os.listdir(self.a.replay)):
-                self.replay(os.path.abspath(os.path.join(self.a.replay, name)))
+            folder = os.path.abspath(self.a.replay)
+            if os.path.exists(os.path.join(folder, 'case.json')):
+                self.replay(folder)
+            else:
+                for name in sorted(os.listdir(folder)):
+                    self.replay(os.path.join(folder, name))
         else:
             if seed is None:
                 # So many that no other run comes to the same ones.
@@ -334,8 +361,7 @@ class Fuzzer:
             '%d ended with status %s' % (n, s) for s, n in sorted(
                 self.outcomes.items(), key=str))))
         for problem, seeds in sorted(self.findings.items()):
-            print('%s: %d, seeds %s' % (problem, len(seeds),
-                                       ' '.join(map(str, seeds[:10]))))
+            print('%s: %d, %s' % (problem, len(seeds), ' '.join(seeds[:10])))
         if not self.findings:
             print('Nothing was found.')
         return 1 if self.findings else 0
