@@ -16,6 +16,11 @@ PIECES = ['subsection', 'end', 'set', '=', ';', ',', ':', '(', ')', '#', '\\\n',
           'false', 'yes', 'automatic', '-1']
 
 
+# What is changed; some of them more often.
+KINDS = ['values', 'values', 'values', 'entries', 'text', 'bytes', 'arguments', 'mesh',
+         'tags', 'checkpoint', 'history', 'history']
+
+
 class Input:
     """One input: made by its seed, in the present folder."""
 
@@ -24,17 +29,24 @@ class Input:
         self.scenes = scenes
         self.meshes = meshes
         self.dimension = self.random.choice([2, 2, 3])
+        self.kind = self.random.choice(KINDS)
         self.options = []
+        # Whether a checkpoint of the run is damaged, and the run continued with these
+        # options more.
         self.restarts = False
-        path = self.random.choice(self.scenes[self.dimension])
-        self.scene = read(path)
+        self.later_options = []
+        candidates = [read(path) for path in self.scenes[self.dimension]]
+        if self.kind == 'history':
+            candidates = [scene for scene in candidates if times(scene) or force(scene)]
+        self.scene = self.random.choice(candidates)
         # Meshes are found beside the scene.
         for mesh in self.meshes[self.dimension]:
             shutil.copy(mesh, '.')
-        kind = self.random.choice(['values', 'values', 'values', 'text', 'bytes', 'mesh',
-                                   'tags', 'arguments', 'checkpoint', 'entries'])
-        getattr(self, 'change_' + kind)()
+        getattr(self, 'change_' + self.kind)()
         write('scene.prm', self.scene)
+
+    def has_platens(self):
+        return force(self.scene) or any('/Force=' in o for o in self.options)
 
     def number(self):
         r = self.random
@@ -267,7 +279,42 @@ class Input:
         self.options = [o.replace('\0', '') for o in self.options]
 
     def change_checkpoint(self):
+        """The run is continued on a finer mesh; after several load steps that is not
+        possible, and it solves the last one again."""
         self.restarts = True
+        if not times(self.scene):
+            self.later_options = ['Refinement/Levels=2']
+
+    def change_history(self):
+        """The same for load steps, of which there are so few that the run is continued
+        within the first or a later one, and for platens."""
+        self.change_checkpoint()
+        if times(self.scene):
+            kept = self.random.randint(2, 5)
+            self.options = ['Load steps/Times=' + ', '.join(times(self.scene)[:kept])]
+            if self.random.random() < .2:
+                self.later_options = ['Refinement/Levels=2']
+
+    def damage(self, folder):
+        """Changes a file of the checkpoints in a folder, or two. Returns whether there
+        is any."""
+        files = sorted(os.path.join(d, f) for d, _, names in os.walk(folder)
+                       for f in names if 'checkpoint' in d)
+        chosen = self.random.sample(files, min(len(files), self.random.choice([1, 1, 2])))
+        for name in chosen:
+            write(name, self.change_bytes(read(name)))
+        return bool(chosen)
+
+
+def times(scene):
+    """The load steps of a scene, if there are any."""
+    found = re.search(rb'^ *set Times *=(.*)$', scene, re.M)
+    return [t.strip() for t in found.group(1).decode().split(',')] if found else []
+
+
+def force(scene):
+    """Whether a scene has a total force, which a search has to find."""
+    return bool(re.search(rb'^\s*set\s+Force\s*=\s*\S', scene, re.M))
 
 
 def read(path):
