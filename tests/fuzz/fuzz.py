@@ -58,6 +58,9 @@ MOST_SAVED = 20
 LIMITS = ['Refinement/Levels=1', 'Refinement/Maximum dofs=2000', 'Output/Times=false',
           'Solver/Total cycles=300', 'Solver/Maximum cycles=60',
           'Solver/Maximum outer iterations=10', 'Output/Directory=results']
+# Forces are found by up to 60 solutions on a mesh.
+FORCE_LIMITS = ['Refinement/Maximum dofs=500', 'Solver/Total cycles=60',
+                'Solver/Maximum cycles=30']
 
 
 def rows(out):
@@ -302,7 +305,7 @@ class Fuzzer:
             except (ValueError, IndexError):
                 return  # what is to be changed is not there
             self.n_inputs += 1
-            limits = list(LIMITS)
+            limits = LIMITS + FORCE_LIMITS * made.has_platens()
             if random.Random(seed).random() < .5:
                 limits.append('Output/Verification=true')
             case = {'name': str(seed), 'dimension': made.dimension,
@@ -313,8 +316,7 @@ class Fuzzer:
             problem, result = self.examine(case)
             if made.restarts and problem is None and made.damage('results'):
                 case['arguments'] += made.later_options + ['--restart']
-                if 'Refinement/Levels=2' not in made.later_options or \
-                        not times(made.scene):
+                if not (times(made.scene) and made.later_options):
                     case['rows'] = rows(result[1])
                 self.examine(case)
         finally:
