@@ -9,9 +9,9 @@ Usage: fuzz.py PROGRAM_2D PROGRAM_3D SCENES_2D SCENES_3D FOUND
 Inputs are tried for so many seconds, and as many inputs at most, on each of the numbers
 of PROCESSES, one after the other; on one process if none are given. Each input is made
 from a number, its seed, which is printed with what is found and with which it can be
-made again (--seed N --seconds 0 tries that one only). The first one is that of the
-option or, so that other inputs are tried each time, from the time of the clock. An input
-is a finding if the run
+made again (--seed N --processes N --seconds 0 tries that one only). The first one is that
+of the option or, so that other inputs are tried each time, from the time of the clock. An
+input is a finding if the run
 - ends by a signal, or with an exit status of its own that says "an error of the
   program" (3), or does not end within the seconds of --timeout,
 - prints a stack trace, or a report of a sanitizer,
@@ -28,15 +28,21 @@ is a finding if the run
   SCRIPT, a second program that reads what was written; that is done for half of the
   inputs.
 
-Exit status 1 if there were any. Inputs of findings, up to 20 of each kind, are saved in
-the folder FOUND, a folder for each: the files as they were before the run, checkpoints
-among them, in case.json the seed as a name, the dimension, the number of processes and the
-arguments, in output what the run has printed, and in left the results that it has left.
-With --replay such a folder, or each folder in the one that is given, is tried in the
-place of new inputs. What was found once, and has been mended, is kept, without output
-and left, in the folder corpus beside this file.
+In the end, or if it is interrupted, there is a table of what was tried: runs for each
+kind of change, with the dimension and the number of processes, and with the exit status.
+("checkpoint, before" are the runs that write the checkpoints, "checkpoint" those that
+continue from damaged ones.) Exit status 1 if there were any findings.
+
+Inputs of findings, up to 20 of each kind, are saved in the folder FOUND, a folder for
+each: the files as they were before the run, checkpoints among them, in case.json the seed
+as a name, the dimension, the number of processes and the arguments, in output what the
+run has printed, and in left the results that it has left. With --replay such a folder, or
+each folder in the one that is given, is tried in the place of new inputs. What was found
+once, and has been mended, is kept, without output and left, in the folder corpus beside
+this file.
 """
 import argparse
+import collections
 import json
 import os
 import random
@@ -134,7 +140,9 @@ class Fuzzer:
             print('Certificates are not verified: %s cannot be run.' % arguments.verify)
             arguments.verify = None
         self.findings = {}
-        self.outcomes = {}
+        self.statuses = collections.Counter()
+        # By kinds of change.
+        self.tried = collections.defaultdict(collections.Counter)
 
     def run(self, dimension, arguments):
         """Status, or None if it does not end, and what it has printed."""
@@ -159,6 +167,9 @@ class Fuzzer:
             except subprocess.TimeoutExpired:
                 stop(process)
                 status = None
+            except KeyboardInterrupt:
+                stop(process)
+                raise
             texts = []
             for file in (out, err):
                 file.seek(0)
@@ -270,7 +281,10 @@ class Fuzzer:
             problem = self.row_problem(case, result)
         if problem is None:
             problem, result = self.verify(arguments, result)
-        self.outcomes[result[0]] = self.outcomes.get(result[0], 0) + 1
+        self.statuses[result[0]] += 1
+        tried = self.tried[case['kind']]
+        tried[case['dimension'], case['processes']] += 1
+        tried['status', result[0]] += 1
         if problem:
             self.add_finding(case, problem, result, before)
         return problem, result
@@ -308,14 +322,16 @@ class Fuzzer:
             limits = LIMITS + FORCE_LIMITS * made.has_platens()
             if random.Random(seed).random() < .5:
                 limits.append('Output/Verification=true')
-            case = {'name': str(seed), 'dimension': made.dimension,
+            case = {'name': str(seed), 'kind': made.kind, 'dimension': made.dimension,
                     'processes': self.n_processes,
                     'arguments': ['scene.prm'] + made.options + limits}
             if made.restarts:
                 case['arguments'].append('Output/Checkpoint=true')
+                case['kind'] += ', before'
             problem, result = self.examine(case)
             if made.restarts and problem is None and made.damage('results'):
                 case['arguments'] += made.later_options + ['--restart']
+                case['kind'] = made.kind
                 if not (times(made.scene) and made.later_options):
                     case['rows'] = rows(result[1])
                 self.examine(case)
@@ -331,6 +347,7 @@ class Fuzzer:
             print('%s: not tried without a launcher' % folder)
             return
         case['name'] = os.path.basename(folder)
+        case.setdefault('kind', 'corpus')
         self.n_processes = case['processes']
         work = tempfile.mkdtemp()
         here = os.getcwd()
@@ -357,8 +374,7 @@ class Fuzzer:
                     self.n_inputs - n_before == self.a.inputs):
                 return seed
 
-    def main(self):
-        seed = self.a.seed
+    def try_all(self):
         if self.a.replay:
             folder = os.path.abspath(self.a.replay)
             if os.path.exists(os.path.join(folder, 'case.json')):
@@ -367,15 +383,36 @@ class Fuzzer:
                 for name in sorted(os.listdir(folder)):
                     self.replay(os.path.join(folder, name))
         else:
+            seed = self.a.seed
             if seed is None:
                 # So many that no other run comes to the same ones.
                 seed = int(time.time()) * 100
             print('The first seed is %d.' % seed, flush=True)
             for self.n_processes in self.a.processes:
                 seed = self.try_inputs(seed)
-        print('%d inputs, of which %s' % (self.n_inputs, ', '.join(
-            '%d ended with status %s' % (n, s) for s, n in sorted(
-                self.outcomes.items(), key=str))))
+
+    def print_tried(self):
+        """A table of all runs: kinds of change, dimensions and processes, statuses."""
+        print('%d inputs in %d runs, %d of them verified' % (
+            self.n_inputs, sum(self.statuses.values()), self.n_verified))
+        columns = [(d, n) for n in (1, 2) for d in (2, 3)]
+        columns += sorted({(d, n) for tried in self.tried.values() for d, n in tried
+                           if d != 'status' and n > 2})
+        columns += [('status', s) for s in sorted(self.statuses, key=str)]
+        names = ['%s %s' % (d, 'none' if n is None else n) if d == 'status' else
+                 '%dD, -np %d' % (d, n) for d, n in columns]
+        print('%-20s' % 'changed' + ''.join('%11s' % name for name in names))
+        total = sum(self.tried.values(), collections.Counter())
+        for kind, tried in sorted(self.tried.items()) + [('all', total)]:
+            print('%-20s' % kind + ''.join('%11d' % tried[c] for c in columns))
+
+    def main(self):
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
+        try:
+            self.try_all()
+        except KeyboardInterrupt:
+            print('Interrupted.')
+        self.print_tried()
         for problem, seeds in sorted(self.findings.items()):
             print('%s: %d, %s' % (problem, len(seeds), ' '.join(seeds[:10])))
         if not self.findings:
