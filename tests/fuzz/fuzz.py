@@ -49,6 +49,7 @@ import random
 import re
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -316,8 +317,8 @@ class Fuzzer:
             os.chdir(work)
             try:
                 made = Input(seed, self.scenes, self.meshes)
-            except (ValueError, IndexError):
-                return  # what is to be changed is not there
+            except (ValueError, IndexError, struct.error):
+                return  # what is to be changed is not there, or cannot be written
             self.n_inputs += 1
             limits = LIMITS + FORCE_LIMITS * made.has_platens()
             if random.Random(seed).random() < .5:

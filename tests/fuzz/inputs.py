@@ -4,6 +4,9 @@ import os
 import random
 import re
 import shutil
+import struct
+
+from meshes import FORMATS, TYPES, Mesh
 
 NUMBERS = ['0', '-0', '1', '-1', '2', '.5', '1e-8', '1e8', '-1e8', '1e-30', '1e30',
            '1e300', '1e-300', '-1e-300', 'nan', 'inf', '-inf', '1e999', '0x10', '1/0',
@@ -16,9 +19,11 @@ PIECES = ['subsection', 'end', 'set', '=', ';', ',', ':', '(', ')', '#', '\\\n',
           'false', 'yes', 'automatic', '-1']
 
 
+DOUBLES = [0., -0., float('nan'), float('inf'), -float('inf'), 1e-300, 1e300, -1e30, 1e-8]
+
 # What is changed; some of them more often.
 KINDS = ['values', 'values', 'values', 'entries', 'text', 'bytes', 'arguments', 'mesh',
-         'tags', 'checkpoint', 'history', 'history']
+         'tags', 'formats', 'formats', 'checkpoint', 'history', 'history']
 
 
 class Input:
@@ -143,14 +148,19 @@ class Input:
                            'file = %s\nend\n' % name).encode()
         return name, data
 
+    def take_mesh_and_scene(self):
+        """Any mesh with the scene that belongs to it, so that it would be solved if
+        nothing else were changed."""
+        name, data = self.take_mesh()
+        self.scene = [s for s in map(read, self.scenes[self.dimension])
+                      if name.encode() in s][0]
+        return name, data
+
     def change_tags(self):
         """In a mesh: physical ids, types of elements, how many tags there are, groups
         that overlap, and names, which the scene uses in the place of ids."""
         r = self.random
-        name, data = self.take_mesh()
-        # The scene that belongs to the mesh, so that it would be solved otherwise.
-        self.scene = [s for s in map(read, self.scenes[self.dimension])
-                      if name.encode() in s][0]
+        name, data = self.take_mesh_and_scene()
         lines = data.decode().split('\n')
         for _ in range(r.choice([1, 1, 2])):
             if r.random() < .3:
@@ -263,6 +273,70 @@ class Input:
             words[k] = r.choice([self.number().encode(), other, other, b'', words[k] +
                                  b'0'])
         write(name, b''.join(words))
+
+    def change_formats(self):
+        """A mesh is written in another format, with some of what it says changed, or
+        numbers of the file, or as it is."""
+        r = self.random
+        name, data = self.take_mesh_and_scene()
+        mesh = Mesh(data)
+        for _ in range(r.choice([0, 1, 1, 2])):
+            self.change_parts(mesh)
+        version, binary = r.choice(FORMATS)
+        self.kind = 'mesh, %s %s' % (version, 'binary' if binary else 'text')
+        mesh.write(name, version, binary)
+        action = r.random()
+        if binary and action < .4:
+            write(name, self.change_binary(read(name)))
+        elif action < .6:
+            write(name, self.change_bytes(read(name)))
+
+    def change_parts(self, mesh):
+        r = self.random
+        action = r.randrange(8)
+        element = r.choice(mesh.elements)
+        if action == 0:
+            element[1] = r.choice([0, 1, 2, 3, 10, -1, -element[1], 2**31 - 1, -2**31])
+        elif action == 1:
+            old, new = element[1], r.choice([0, 1, 2, 3, 10, -1, 2**31 - 1])
+            for e in mesh.elements:
+                e[1] = new if e[1] == old else e[1]
+        elif action == 2:
+            element[0] = r.choice(TYPES)
+        elif action == 3:
+            element[2][r.randrange(len(element[2]))] = r.choice(
+                [0, -1, 2**31 - 1, len(mesh.nodes) + 1, r.randint(1, len(mesh.nodes))])
+        elif action == 4:
+            r.shuffle(element[2])
+        elif action == 5:
+            mesh.elements.append([element[0], r.choice([element[1], 1, 7]),
+                                  list(element[2])])
+        elif action == 6:
+            mesh.elements.remove(element)
+        else:
+            i = r.randrange(len(mesh.nodes))
+            point = list(mesh.nodes[i])
+            point[r.randrange(3)] = r.choice([r.choice(DOUBLES), r.gauss(0, 1)])
+            mesh.nodes[i] = r.choice([tuple(point), r.choice(mesh.nodes)])
+
+    def change_binary(self, data):
+        """Numbers of a binary file, most of which begin after a multiple of four bytes
+        in their sections."""
+        r = self.random
+        sections = [m.span(1) for m in re.finditer(
+            rb'^\$(?:Entities|Nodes|Elements)\n(.*?)\n\$End', data, re.M | re.S)]
+        for _ in range(r.choice([1, 1, 2, 5])):
+            begin, end = r.choice(sections)
+            # What counts the others is at the beginning.
+            n = min((end - begin) // 4, r.choice([8, 1000000]))
+            at = begin + 4 * r.randrange(n)
+            number = r.choice([
+                struct.pack('=i', r.choice([r.randint(-1, 40), 2**31 - 1, -2**31])),
+                struct.pack('=q', r.choice([r.randint(-1, 40), 2**31, 2**32 + 1, 2**40,
+                                            2**63 - 1, -2**63])),
+                struct.pack('=d', r.choice([r.choice(DOUBLES), r.gauss(0, 1)]))])
+            data = data[:at] + number + data[at + len(number):]
+        return data
 
     def change_arguments(self):
         r = self.random
