@@ -135,11 +135,12 @@ class Fuzzer:
         self.found = os.path.abspath(arguments.found)
         self.n_processes = 1
         self.n_inputs = self.n_verified = 0
-        if arguments.verify and subprocess.run(
-                [sys.executable, '-B', arguments.verify, '--help'],
+        self.script = arguments.verify and os.path.abspath(arguments.verify)
+        if self.script and subprocess.run(
+                [sys.executable, '-B', self.script, '--help'],
                 stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode != 0:
-            print('Certificates are not verified: %s cannot be run.' % arguments.verify)
-            arguments.verify = None
+            print('Certificates are not verified: %s cannot be run.' % self.script)
+            self.script = None
         self.findings = {}
         self.statuses = collections.Counter()
         # By kinds of change.
@@ -245,12 +246,12 @@ class Fuzzer:
     def verify(self, arguments, result):
         """Whether the certificate is confirmed, if the run has one and wrote what that
         takes; what the second program says is added to the result."""
-        if (not self.a.verify or result[0] != 0 or '--check' in arguments or
+        if (not self.script or result[0] != 0 or '--check' in arguments or
                 'Output/Verification=true' not in arguments):
             return None, result
         self.n_verified += 1
         try:
-            done = subprocess.run([sys.executable, '-B', self.a.verify, 'results'],
+            done = subprocess.run([sys.executable, '-B', self.script, 'results'],
                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                   timeout=self.a.timeout)
             status, text = done.returncode, done.stdout.decode('utf-8', 'replace')

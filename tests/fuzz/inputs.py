@@ -22,7 +22,7 @@ PIECES = ['subsection', 'end', 'set', '=', ';', ',', ':', '(', ')', '#', '\\\n',
 DOUBLES = [0., -0., float('nan'), float('inf'), -float('inf'), 1e-300, 1e300, -1e30, 1e-8]
 
 # What is changed; some of them more often.
-KINDS = ['values', 'values', 'values', 'entries', 'text', 'bytes', 'arguments', 'mesh',
+KINDS = ['values', 'values', 'values', 'numbers', 'numbers', 'entries', 'text', 'bytes', 'arguments', 'mesh',
          'tags', 'formats', 'formats', 'checkpoint', 'history', 'history']
 
 
@@ -83,6 +83,22 @@ class Input:
             text = self.scene.decode('utf-8', 'replace')
             self.scene = (text[:m.start(2)] + ' ' + self.value(m.group(2).strip()) +
                           text[m.end(2):]).encode('utf-8', 'replace')
+
+    def change_numbers(self):
+        """Numbers of the scene, by so little that it may still be one."""
+        for _ in range(self.random.choice([1, 2, 4])):
+            text = self.scene.decode()
+            # Neither in comments nor ids of boundaries, which a colon follows.
+            found = [m for m in re.finditer(r'(?<![\w.^])\d*\.?\d+(?:e-?\d+)?(?![\w.:])',
+                                            text)
+                     if '#' not in text[text.rfind('\n', 0, m.start()) + 1:m.start()] and
+                     '=' in text[text.rfind('\n', 0, m.start()) + 1:m.start()]]
+            m = self.random.choice(found)
+            number = float(m.group(0)) * self.random.choice(
+                [-1, 0, .5, 2, 10, .1, 100, .01, self.random.gauss(1, .1)])
+            self.scene = (text[:m.start()] + self.random.choice(
+                ['%g' % number, '%g' % number, '%d' % round(number)]) +
+                text[m.end():]).encode()
 
     def change_entries(self):
         """Entries of other scenes are put in the place of this one's."""
