@@ -307,6 +307,7 @@ class Fuzzer:
         shutil.copytree(before, folder)
         with open(os.path.join(folder, 'case.json'), 'w') as f:
             json.dump(case, f, indent=1)
+            f.write('\n')
         write(os.path.join(folder, 'output'), ('status %s\n%s\n%s' % result).encode())
         if os.path.isdir('results'):
             shutil.copytree('results', os.path.join(folder, 'left'))
@@ -328,7 +329,7 @@ class Fuzzer:
                     'processes': self.n_processes,
                     'arguments': ['scene.prm'] + made.options + limits}
             if made.restarts:
-                case['arguments'].append('Output/Checkpoint=true')
+                case['arguments'] += made.first_options
                 case['kind'] += ', before'
             problem, result = self.examine(case)
             if made.restarts and problem is None and made.damage('results'):
@@ -401,7 +402,7 @@ class Fuzzer:
         columns += sorted({(d, n) for tried in self.tried.values() for d, n in tried
                            if d != 'status' and n > 2})
         columns += [('status', s) for s in sorted(self.statuses, key=str)]
-        names = ['%s %s' % (d, 'none' if n is None else n) if d == 'status' else
+        names = ['no end' if n is None else 'status %d' % n if d == 'status' else
                  '%dD, -np %d' % (d, n) for d, n in columns]
         print('%-20s' % 'changed' + ''.join('%11s' % name for name in names))
         total = sum(self.tried.values(), collections.Counter())

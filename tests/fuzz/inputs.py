@@ -36,9 +36,10 @@ class Input:
         self.dimension = self.random.choice([2, 2, 3])
         self.kind = self.random.choice(KINDS)
         self.options = []
-        # Whether a checkpoint of the run is damaged, and the run continued with these
-        # options more.
+        # Whether a checkpoint of the run is damaged, and the run continued; each of the
+        # two with these options more.
         self.restarts = False
+        self.first_options = ['Output/Checkpoint=true']
         self.later_options = []
         candidates = [read(path) for path in self.scenes[self.dimension]]
         if self.kind == 'history':
@@ -370,10 +371,12 @@ class Input:
 
     def change_checkpoint(self):
         """The run is continued on a finer mesh; after several load steps that is not
-        possible, and it solves the last one again."""
+        possible, and it solves the last one again. In both cases there are two
+        checkpoints."""
         self.restarts = True
         if not times(self.scene):
-            self.later_options = ['Refinement/Levels=2']
+            self.first_options += ['Refinement/Levels=2']
+            self.later_options += ['Refinement/Levels=3']
 
     def change_history(self):
         """The same for load steps, of which there are so few that the run is continued
@@ -383,7 +386,7 @@ class Input:
             kept = self.random.randint(2, 5)
             self.options = ['Load steps/Times=' + ', '.join(times(self.scene)[:kept])]
             if self.random.random() < .2:
-                self.later_options = ['Refinement/Levels=2']
+                self.later_options += ['Refinement/Levels=2']
 
     def damage(self, folder):
         """Changes a file of the checkpoints in a folder, or two. Returns whether there
