@@ -17,13 +17,12 @@ EXPRESSIONS = ['x', 'y', 'z', 'x*y', '1/x', 'sqrt(x)', 'log(-x)', 'x^1000', 'sin
 PIECES = ['subsection', 'end', 'set', '=', ';', ',', ':', '(', ')', '#', '\\\n', '\0',
           '\xff', '\u00e9', '$', '%s', '%n', '../', "'", '"', '\t', '\r\n', 'true',
           'false', 'yes', 'automatic', '-1']
-
-
 DOUBLES = [0., -0., float('nan'), float('inf'), -float('inf'), 1e-300, 1e300, -1e30, 1e-8]
 
 # What is changed; some of them more often.
-KINDS = ['values', 'values', 'values', 'numbers', 'numbers', 'entries', 'text', 'bytes', 'arguments', 'mesh',
-         'tags', 'formats', 'formats', 'checkpoint', 'history', 'history']
+KINDS = ['values', 'values', 'values', 'numbers', 'numbers', 'entries', 'text', 'bytes',
+         'arguments', 'mesh', 'tags', 'formats', 'formats', 'checkpoint', 'history',
+         'history']
 
 
 class Input:
@@ -75,8 +74,8 @@ class Input:
         return [m for m in re.finditer(r'^( *set [^=\n]*=)([^\n]*)$',
                                        self.scene.decode('utf-8', 'replace'), re.M)]
 
-    def change_values(self, times=None):
-        for _ in range(times or self.random.choice([1, 1, 2, 4])):
+    def change_values(self, n=None):
+        for _ in range(n or self.random.choice([1, 1, 2, 4])):
             entries = self.entries()
             if not entries:
                 return
@@ -401,7 +400,7 @@ class Input:
 
 def times(scene):
     """The load steps of a scene, if there are any."""
-    found = re.search(rb'^ *set Times *=(.*)$', scene, re.M)
+    found = re.search(rb'^ *set Times *= *([\d.].*)$', scene, re.M)
     return [t.strip() for t in found.group(1).decode().split(',')] if found else []
 
 
