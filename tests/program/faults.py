@@ -4,6 +4,7 @@ result of a run that was left alone, or a sentence, and never anything else.
 
 Usage: faults.py PROGRAM SCENE SCENARIO ... [--tries N] [--processes N]
          [--mpiexec MPIEXEC] [--numproc-flag=FLAG] [--levels N] [--seed N]
+         [--entry SECTION/ENTRY=VALUE] ...
 
 Scenarios:
   damage  bits flipped, ends cut off, files emptied, removed and added in checkpoints
@@ -14,6 +15,9 @@ Scenarios:
   full    a disk that gets full at random moments, in a mount namespace of its own;
           skipped, and said so, where the system does not allow one
   quota   files that may not get longer than a limit, which cannot be known before
+
+SCENE, with the entries of the options in the place of its own, may have load steps, and
+platens: each load step but the first is a level more, and has checkpoints like those.
 
 A level is lost if a run that is continued solves it once more although its row had
 been printed; at most one may be lost each time. Moments and bits are random but, for
@@ -89,7 +93,7 @@ class Faults:
         ignoring = ["sh", "-c", "trap '' XFSZ; exec \"$0\" \"$@\""] if limited else []
         words = [*ignoring, self.options.program, self.options.scene,
                  f"Output/Directory={directory}", f"Refinement/Levels={levels}",
-                 "Output/Times=false", *arguments]
+                 "Output/Times=false", *self.options.entry, *arguments]
         if checkpoint:
             words.append("Output/Checkpoint=true")
         if n > 1:
@@ -164,7 +168,9 @@ class Faults:
             result = self.run(directory, n=n, levels=levels)
             seconds = time.monotonic() - begin
             demand(result.status == 0, f"left alone it fails: {result}")
-            demand(len(rows_of(result.out)) == key[1] + 1, "rows are missing")
+            steps = re.findall(r"^Load step \d+ of (\d+),", result.out, re.M)
+            demand(len(rows_of(result.out)) == key[1] + int((steps or [1])[0]),
+                   "rows are missing")
             self.wholes[key] = directory, result.out, seconds
         return self.wholes[key]
 
@@ -192,6 +198,15 @@ class Faults:
                         continue
                     demand(numpy.allclose(a["levels"][key], b["levels"][key],
                                           rtol=1e-5, atol=1e-9), f"history: {key}")
+                demand(sorted(a.get("forces", [])) == sorted(b.get("forces", [])),
+                       "history: not the same forces")
+                forces = [{key: values[()] for key, values in
+                           file.get("forces", {}).items() if key != "level"}
+                          for file in (a, b)]
+                size = max((abs(f).max() for f in forces[0].values()), default=0)
+                for key in forces[0]:
+                    demand(numpy.allclose(forces[0][key], forces[1][key], rtol=0,
+                                          atol=1e-5 * size), f"history: force {key}")
                 for level in a["contact"]:
                     demand(numpy.array_equal(a["contact"][level]["state"],
                                              b["contact"][level]["state"]),
@@ -679,6 +694,7 @@ def main():
     parser.add_argument("--numproc-flag", default="-np")
     parser.add_argument("--levels", type=int, default=4)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--entry", action="append", default=[])
     options = parser.parse_args()
     if "full" in options.scenarios:
         in_namespace()

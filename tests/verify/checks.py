@@ -199,10 +199,10 @@ def wrong_slip(found):
 
 
 def wrong_states(found):
-    """What is not as nodes are said to be, by name."""
+    """What is not as nodes are said to be, by name. Given friction (Tresca's) may hold a
+    node that is open: whether it slides, its state does not say, and wrong_slip() asks."""
     state, unit = found.level.contact_states, found.contact_unit
     rubs = found.can_slide & (found.law != "none")
-    rubs &= (state > 0) | (found.law != "Coulomb")
     # A prescribed component of the slip leaves but a share of the bound to the others.
     share = np.where(found.slip > 0, np.linalg.norm(found.direction, axis=1), 1)
     missing = np.maximum(found.bound * share - found.drag, 0)
@@ -211,7 +211,7 @@ def wrong_states(found):
     return {"open": np.where(state == 0, np.abs(found.pressing), 0) / unit,
             "touches": np.where(state > 0, apart, 0) / unit,
             "sticks": np.where(rubs & (state == 2), slip, 0) / unit,
-            "slides": np.where(rubs & (state != 2), missing, 0) / unit}
+            "slides": np.where(rubs & (state == 1), missing, 0) / unit}
 
 
 def check_equilibrium(verdict, found, tolerance):

@@ -9,7 +9,7 @@ from unit_cell import corner_functions, gauss_points
 def add_up(n_nodes, nodes, values):
     """Sums of values (k x corners x dim) at the nodes (k x corners) they belong to."""
     return np.stack([np.bincount(nodes.ravel(), values[..., d].ravel(), n_nodes)
-                     for d in range(values.shape[-1])], axis=-1)
+                     for d in range(values.shape[-1])], axis=-1).astype(float)
 
 
 def at_gauss_points(level, cells):
@@ -99,8 +99,8 @@ class Rows:
                         weights = pairs.setdefault((place[master], k),
                                                    np.zeros(2**level.dim))
                         weights[corner] += weight
-        self.at, self.cells = np.array(list(pairs) or [(0, 0)]).T
-        weights = np.array(list(pairs.values()) or [np.zeros(2**level.dim)])
+        self.at, self.cells = np.array(list(pairs), int).reshape(-1, 2).T
+        weights = np.array(list(pairs.values())).reshape(-1, 2**level.dim)
 
         # Blocks of the node and each corner of the cell.
         lame, mu, averaged = lame_constants(level, self.cells)
