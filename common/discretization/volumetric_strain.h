@@ -11,7 +11,6 @@
 
 #include <deal.II/fe/fe_values.h>
 
-
 #include <vector>
 
 namespace Friction

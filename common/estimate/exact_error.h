@@ -10,7 +10,6 @@
 
 #include <deal.II/fe/mapping.h>
 
-
 #include <string>
 
 namespace Friction

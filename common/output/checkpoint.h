@@ -7,7 +7,6 @@
 
 #include <deal.II/dofs/dof_handler.h>
 
-
 #include <common/output/run_directory.h>
 #include <common/parallel/vector_type.h>
 

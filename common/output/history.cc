@@ -173,7 +173,10 @@ namespace Friction
     {
       using R = ContactRecord<dim>;
       column("point", "place of the node", Q::length, &R::point);
-      column("normal", "direction of contact, from the body to the obstacle", Q::number, &R::normal);
+      column("normal",
+             "direction of contact, from the body to the obstacle",
+             Q::number,
+             &R::normal);
       column("displacement", "displacement", Q::length, &R::displacement);
       column("slip", "slip along the obstacle", Q::length, &R::slip);
       column("force", "force of the obstacle on the node", Q::force, &R::force);

@@ -227,6 +227,8 @@ namespace Friction
         prm.set(entry->name, value);
         prm.leave_subsection();
         origin[path] = where;
+        if (may_use_names(path))
+          all_texts.push_back(value);
       }
 
       // The numbers of sections 'Contact 2', ... or 'Obstacle 2', ... in which
@@ -303,7 +305,18 @@ namespace Friction
       {
         unsigned int n = 0;
         for (const auto &[path, where] : origin)
-          n += Friction::n_uses(get(path), word);
+          if (may_use_names(path))
+            n += Friction::n_uses(get(path), word);
+        return n;
+      }
+
+      // The same with values in whose place an override has put others.
+      unsigned int
+      n_uses_ever(const std::string &word) const
+      {
+        unsigned int n = 0;
+        for (const std::string &text : all_texts)
+          n += Friction::n_uses(text, word);
         return n;
       }
 
@@ -332,6 +345,14 @@ namespace Friction
       std::map<std::string, std::string> origin;
       std::set<std::string>              set_by_source;
       std::set<unsigned int>             further;
+      std::vector<std::string>           all_texts;
+
+      // Names of files are no expressions.
+      static bool
+      may_use_names(const std::string &path)
+      {
+        return path != "Scene/Mesh file" && path.compare(0, 7, "Output/") != 0;
+      }
     };
 
 
@@ -504,6 +525,10 @@ namespace Friction
           if (name == "x" || name == "y" || name == "z")
             throw InputError(values.subject(path) + ": '" + name +
                              "' is a coordinate; choose another name.");
+          if (name.compare(0, 3, "no_") == 0)
+            throw InputError(values.subject(path) + ": '" + excerpt(name) +
+                             "' begins like names that the program needs for "
+                             "itself; choose another name.");
           if (name == "t" && !values.get("Load steps/Times").empty())
             throw InputError(values.subject(path) +
                              ": 't' is the time of load steps; choose another "
@@ -956,7 +981,7 @@ namespace Friction
           {
             const std::string name =
               Utilities::trim(part.substr(0, part.find('=')));
-            if (values.n_uses(name) < 2)
+            if (values.n_uses_ever(name) < 2)
               warnings.push_back("Warning: " + values.subject(path) +
                                  " says what '" + excerpt(name) +
                                  "' is, which nothing uses.");
@@ -983,8 +1008,8 @@ namespace Friction
           parameters.warnings.push_back(
             "Warning: " +
             values.subject(section_name("Obstacle", number) + "/Function") +
-            " moves with t, but slip is that of the body: friction takes no "
-            "notice of an obstacle that moves along its own surface.");
+            " depends on t, but slip is that of the body alone: where the "
+            "obstacle moves along its own surface, friction takes no notice.");
       };
       warn(1, parameters.obstacle, parameters.contact);
       for (const auto &further : parameters.further_contacts)

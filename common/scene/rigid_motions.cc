@@ -425,25 +425,50 @@ namespace Friction
 
 
 
-    // Whether an obstacle can resist the platens of a part: it touches one
-    // itself, or has a platen in common with a part that does.
+    // Eigenvectors of the equations for the motions of a part, those of the
+    // motions that they leave free first, and how many of these there are.
     template <int dim>
-    bool
-    can_resist_platens(const Scene<dim>                 &scene,
-                       const std::vector<FreePart<dim>> &parts,
-                       const FreePart<dim>              &part)
+    std::pair<unsigned int, Eigen::MatrixXd>
+    free_motions(const Eigen::MatrixXd &equations)
     {
-      return std::any_of(parts.begin(), parts.end(), [&](const auto &other) {
-        const auto &conditions = scene.dirichlet_conditions();
-        return has_contact(scene, other) &&
-          (&other == &part ||
-           std::any_of(
-             conditions.begin(), conditions.end(), [&](const auto &condition) {
-               return condition.platen != nullptr &&
-                 part.boundary_ids.count(condition.boundary_id) > 0 &&
-                 other.boundary_ids.count(condition.boundary_id) > 0;
-             }));
-      });
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(equations);
+      const Eigen::VectorXd &values = eigen.eigenvalues();
+      unsigned int           n_free = 0;
+      while (n_free < n_motions<dim> &&
+             values[n_free] <= 1e-10 * std::max(1., values[n_motions<dim> - 1]))
+        ++n_free;
+      return {n_free, eigen.eigenvectors()};
+    }
+
+
+
+    // Parts that are known to resist make the platens that they share with
+    // others resist, and those the others.
+    template <int dim>
+    void
+    hand_on_by_platens(const Scene<dim>                 &scene,
+                       const std::vector<FreePart<dim>> &parts,
+                       std::vector<bool>                &resists)
+    {
+      for (bool changes = true; changes;)
+        {
+          changes = false;
+          for (const auto &condition : scene.dirichlet_conditions())
+            {
+              bool is_held = false;
+              for (unsigned int i = 0; i < parts.size(); ++i)
+                is_held = is_held ||
+                  (condition.platen != nullptr && resists[i] &&
+                   parts[i].boundary_ids.count(condition.boundary_id) > 0);
+              for (unsigned int i = 0; is_held && i < parts.size(); ++i)
+                if (!resists[i] &&
+                    parts[i].boundary_ids.count(condition.boundary_id) > 0)
+                  {
+                    resists[i] = true;
+                    changes    = true;
+                  }
+            }
+        }
     }
   } // namespace
 
@@ -478,14 +503,13 @@ namespace Friction
       find_joints(mesh, part_of_cell, parts);
 
     // Each component that is prescribed in a vertex is an equation for the
-    // motions. One that a platen controls is the same in all its vertices, and
-    // is held only if an obstacle can resist; whether that bears the given
-    // force is found out by looking for it, see ForceControl.
+    // motions: those of the part that hold it in any case, and for components
+    // that a platen controls those that hold if the platen is held, and those
+    // that say no more than that it does not turn.
     std::vector<Eigen::MatrixXd> equations(
       parts.size(), Eigen::MatrixXd::Zero(n_motions<dim>, n_motions<dim>));
-    std::vector<bool> platens_hold(parts.size());
-    for (unsigned int number = 0; number < parts.size(); ++number)
-      platens_hold[number] = can_resist_platens(scene, parts, parts[number]);
+    std::vector<Eigen::MatrixXd> of_held_platens = equations,
+                                 of_free_platens = equations;
     // Of each part and condition a vertex, from which others are counted.
     std::map<std::pair<unsigned int, const void *>, Point<dim>> first_vertices;
     for (const auto &cell : mesh.cell_iterators_on_level(0))
@@ -496,8 +520,9 @@ namespace Friction
           return Eigen::VectorXd(
             all_motions_at(parts[number], p).row(component).transpose());
         };
-        const auto prescribe = [&](const Eigen::VectorXd &row) {
-          equations[number] += row * row.transpose();
+        const auto prescribe = [&](std::vector<Eigen::MatrixXd> &where,
+                                   const Eigen::VectorXd        &row) {
+          where[number] += row * row.transpose();
         };
         for (const auto &face : cell->face_iterators())
           if (face->at_boundary())
@@ -510,36 +535,44 @@ namespace Friction
                       first_vertices.insert({{number, &condition}, p})
                         .first->second;
                     for (unsigned int d = 0; d < dim; ++d)
-                      if (condition.components[d])
-                        prescribe(condition.platen != nullptr &&
-                                      condition.platen->is_controlled[d] &&
-                                      !platens_hold[number]
-                                    ? row_of(p, d) - row_of(first, d)
-                                    : row_of(p, d));
+                      if (condition.components[d] &&
+                          condition.platen != nullptr &&
+                          condition.platen->is_controlled[d])
+                        {
+                          prescribe(of_held_platens, row_of(p, d));
+                          prescribe(of_free_platens,
+                                    row_of(p, d) - row_of(first, d));
+                        }
+                      else if (condition.components[d])
+                        prescribe(equations, row_of(p, d));
                   }
-        scene.for_each_pin(cell,
-                           [&](const PinnedPoint<dim> &pin, unsigned int) {
-                             prescribe(row_of(pin.point, pin.component));
-                           });
+        scene.for_each_pin(
+          cell, [&](const PinnedPoint<dim> &pin, unsigned int) {
+            prescribe(equations, row_of(pin.point, pin.component));
+          });
       }
+
+    // A platen is held by a part that touches an obstacle, or that is held
+    // without it; whether that bears the given force is found out by looking
+    // for it, see ForceControl.
+    std::vector<bool> resists(parts.size());
+    for (unsigned int number = 0; number < parts.size(); ++number)
+      resists[number] = has_contact(scene, parts[number]) ||
+        free_motions<dim>(equations[number]).first == 0;
+    hand_on_by_platens(scene, parts, resists);
 
     std::vector<FreePart<dim>> result;
     for (unsigned int number = 0; number < parts.size(); ++number)
       {
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-          equations[number]);
-        const Eigen::VectorXd &values = eigen.eigenvalues();
-        unsigned int           n_free = 0;
-        while (n_free < n_motions<dim> &&
-               values[n_free] <=
-                 1e-10 * std::max(1., values[n_motions<dim> - 1]))
-          ++n_free;
+        const auto [n_free, directions] = free_motions<dim>(
+          equations[number] +
+          (resists[number] ? of_held_platens : of_free_platens)[number]);
         if (n_free == 0)
           continue;
         FreePart<dim> &part = parts[number];
         part.number         = number;
         part.n_all_cells    = mesh.n_cells(0);
-        part.motions = simple_basis(eigen.eigenvectors().leftCols(n_free));
+        part.motions        = simple_basis(directions.leftCols(n_free));
         result.push_back(part);
       }
     return result;

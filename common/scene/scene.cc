@@ -454,7 +454,9 @@ namespace Friction
                            " leaves a component free, which is not possible "
                            "together with 'Scene/Rotation angle'; set one of "
                            "them otherwise.");
-        // No scene file has these names of coordinates.
+        // Names of coordinates that no scene file can have, so that those of
+        // its own are none; when all else is known to be right.
+        platen.force = make_function(components, where);
         parse_function<dim>(
           components,
           parameters.expressions,
@@ -462,7 +464,6 @@ namespace Friction
             ", where a total force cannot depend on the place, for which there "
             "is 'Traction'",
           dim == 2 ? "no_x,no_y" : "no_x,no_y,no_z");
-        platen.force = make_function(components, where);
         // What is no number at a later time shall not be found out then.
         for (unsigned int step = 0; step < n_load_steps(); ++step)
           {
@@ -799,8 +800,7 @@ namespace Friction
 
     if (n_contact_boundaries() == 0)
       return "Warning: no part of the boundary may touch anything, so that "
-             "this "
-             "is plain elasticity; if there should be contact, set "
+             "this is plain elasticity; if there should be contact, set "
              "'Contact/Boundary id' and 'Obstacle/Kind'.";
 
     double bound = std::numeric_limits<double>::max();

@@ -265,6 +265,8 @@ class Fuzzer:
         the same meshes, and energies but for the accuracy of forces that are found."""
         if result[0] != 0:
             return None
+        if len(rows(result[1])) < len(case.get('rows', [])):
+            return 'a run that was continued has lost levels'
         for row, other in zip(rows(result[1]), case.get('rows', [])):
             if row[:3] != other[:3] or (abs(float(row[8]) - float(other[8])) >
                                         1e-3 * abs(float(other[8])) + 1e-12):

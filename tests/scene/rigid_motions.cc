@@ -11,6 +11,9 @@
 // - Bodies that are held by a boundary, by two planes of symmetry, by three
 //   components in two vertices, and with one of these less. What is pinned in a
 //   vertex of the coarse mesh, up to rounding, is pinned on fine ones.
+// - Columns side by side with platens of given force on them: these hold if
+// some
+//   column is held otherwise, and hand that on to all columns that they share.
 
 #include <common/input_error.h>
 #include <common/scene/rigid_motions.h>
@@ -309,6 +312,61 @@ namespace
     pins.push_back({"(0, 1, 0)", {"free", "free", "0"}});
     check(verdict<3>(p) == "held", "and three vertices hold");
   }
+
+
+
+  // Squares side by side and apart, their tops and bottoms with these boundary
+  // ids: how many of them may move.
+  unsigned int
+  n_free_columns(const Parameters                &p,
+                 const std::vector<unsigned int> &tops,
+                 const std::vector<unsigned int> &bottoms)
+  {
+    Triangulation<2> mesh;
+    for (unsigned int i = 0; i < tops.size(); ++i)
+      {
+        Triangulation<2> column, before;
+        GridGenerator::hyper_cube(column);
+        GridTools::shift(Point<2>(2. * i, 0.), column);
+        before.copy_triangulation(mesh);
+        mesh.clear();
+        if (i == 0)
+          mesh.copy_triangulation(column);
+        else
+          GridGenerator::merge_triangulations(before, column, mesh);
+      }
+    for (const auto &cell : mesh.active_cell_iterators())
+      {
+        const unsigned int i = std::lround((cell->center()[0] - .5) / 2.);
+        cell->face(2)->set_boundary_id(bottoms[i]);
+        cell->face(3)->set_boundary_id(tops[i]);
+      }
+    std::vector<unsigned int> parts;
+    return free_parts(Scene<2>(p), mesh, parts).size();
+  }
+
+
+
+  void
+  test_platens()
+  {
+    Parameters p;
+    auto      &displacement = p.boundary_conditions.displacement;
+    auto      &force        = p.boundary_conditions.force;
+    displacement            = {{"3", {"0", "-0.01"}}};
+    force                   = {{"3", {"free", "-0.02"}}};
+    check(n_free_columns(p, {3}, {0}) == 1, "a platen does not hold a column");
+    check(n_free_columns(p, {3, 3}, {0, 0}) == 2, "nor two of them");
+    displacement.push_back({"2", {"0", "0"}});
+    check(n_free_columns(p, {3, 3}, {2, 0}) == 0,
+          "it does if one of them stands on something");
+    displacement.push_back({"1", {"0", "-0.01"}});
+    force.push_back({"1", {"free", "-0.01"}});
+    check(n_free_columns(p, {3, 3, 0}, {2, 1, 1}) == 0,
+          "and hands that on to another platen");
+    check(n_free_columns(p, {3, 0, 0}, {2, 1, 1}) == 2,
+          "which it has to share a column with");
+  }
 } // namespace
 
 
@@ -322,4 +380,5 @@ main(int argc, char *argv[])
   test_cones();
   test_bodies();
   test_pins();
+  test_platens();
 }

@@ -27,8 +27,9 @@ def verify_level(level, reported, scene, tolerance, before=None):
     check_certificate(verdict, found, reported, tolerance)
     check_reported_numbers(verdict, found, reported, tolerance)
     check_reported_nodes(verdict, found, reported, tolerance)
-    check_reported_forces(verdict, found, reported, tolerance)
-    unknown = check_given_forces(verdict, found, reported, scene, tolerance)
+    least = least_force(found, scene)
+    check_reported_forces(verdict, found, reported, least, tolerance)
+    unknown = check_given_forces(verdict, found, reported, scene, least, tolerance)
     return verdict, unknown + compare_with_scene(verdict, level, scene, found.hanging,
                                                  exact)
 
@@ -324,7 +325,27 @@ def reactions_at_nodes(found):
     return reactions
 
 
-def check_given_forces(verdict, found, reported, scene, tolerance):
+def least_force(found, scene):
+    """What sums of forces are compared with at least, since less is rounding: that which
+    the displacements leave, and where forces are given, the displacements with which the
+    search for them begins, which are a million times as large or more where a force is
+    to be zero."""
+    level, largest = found.level, 0.
+    platens = dict(scene.conditions("Boundary conditions/Force"))
+    try:
+        for key, components in scene.conditions("Boundary conditions/Displacement"):
+            if key in platens:
+                nodes = np.unique(level.boundary_faces[level.boundary_ids
+                                                       == boundary_id(key)])
+                texts = ["0" if c == "free" else c for c in components]
+                field = scene.vector_field(texts, level.vertices[nodes])
+                largest = max(largest, np.abs(field).max(initial=0))
+    except NotUnderstood:
+        pass  # Which check_given_forces() tells.
+    return max(found.rounding, 1e-6 * found.largest_stiffness * largest)
+
+
+def check_given_forces(verdict, found, reported, scene, least, tolerance):
     """What holds a platen exerts the force that the scene gives, up to a part of the
     largest force on the body that there has been, and is where it is said to be.
     Returns entries that are beyond this program."""
@@ -333,7 +354,7 @@ def check_given_forces(verdict, found, reported, scene, tolerance):
     platens = dict(scene.conditions("Boundary conditions/Force"))
     unit = max(found.pressing.sum(), np.abs(nodal_loads(
         level, level.body_force, level.traction_faces, level.tractions)).sum())
-    unit = max([unit, *reported["normal_forces_before"]])
+    unit = max([unit, least, *reported["normal_forces_before"]])
     try:
         for key, components in scene.conditions("Boundary conditions/Displacement"):
             if not platens:
@@ -370,7 +391,7 @@ def check_given_forces(verdict, found, reported, scene, tolerance):
     return []
 
 
-def check_reported_forces(verdict, found, reported, tolerance):
+def check_reported_forces(verdict, found, reported, least, tolerance):
     """The forces on the body, if they are there: those of the obstacle, reactions as
     far as a boundary does not share nodes with another one that is held, loads, and
     their sum, which the residual alone must give."""
@@ -408,7 +429,7 @@ def check_reported_forces(verdict, found, reported, tolerance):
     forces["all tractions"] = tractions
     mine["all tractions"] = nodal_loads(level, None, level.traction_faces,
                                         level.tractions).sum(axis=0)
-    largest = max(np.abs(value).max() for value in mine.values())
+    largest = max([least, *(np.abs(value).max() for value in mine.values())])
     for name, value in mine.items():
         theirs = forces.get(name)
         verdict.demand(theirs is not None, f"history.h5 has no force '{name}'")

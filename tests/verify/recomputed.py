@@ -106,6 +106,7 @@ class Recomputed:
         # if the others cancel it: where a body merely moves all forces are rounding
         # errors.
         self.rounding = 1e-8 * np.max(diagonal * self.lengths * ~self.is_hanging)
+        self.largest_stiffness = np.max(diagonal * ~self.is_hanging)
 
     def _find_units(self, diagonal, volumes):
         """unit, contact_unit: the force that others are compared with, at each node of
