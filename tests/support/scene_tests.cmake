@@ -1,6 +1,6 @@
 # Every shipped scene of a step program runs in a test, on one process and on
-# several. What shortens the run is in NAME.overrides: lines like those of a command,
-# and comments.
+# several. What shortens the run is in NAME.overrides: lines like those of a command
+# (without semicolons, which separate lists of CMake), and comments.
 #
 # Not one of deal.II's own parameter file tests, since those would compare
 # numbers of cycles to the last one; BOUND is what they must not exceed.
