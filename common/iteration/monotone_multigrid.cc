@@ -90,9 +90,7 @@ namespace Friction
   std::size_t
   MonotoneMultigrid<dim>::memory_consumption() const
   {
-    return smoother->memory_consumption() + correction->memory_consumption() +
-      step_control->memory_consumption() + r.memory_consumption() +
-      v.memory_consumption();
+    return smoother->memory_consumption() + correction->memory_consumption();
   }
 
 

@@ -159,19 +159,6 @@ namespace Friction
 
 
 
-  template <int dim>
-  std::size_t
-  Recombination<dim>::memory_consumption() const
-  {
-    std::size_t bytes = 0;
-    for (const auto *vectors : {&older_steps, &older_images})
-      for (const VectorType &vector : *vectors)
-        bytes += vector.memory_consumption();
-    return bytes;
-  }
-
-
-
   template class Recombination<2>;
   template class Recombination<3>;
 } // namespace Friction

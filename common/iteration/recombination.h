@@ -52,8 +52,6 @@ namespace Friction
                          const VectorType      &r,
                          const Truncation<dim> &truncation);
 
-    std::size_t memory_consumption() const;
-
   private:
     const DiscreteProblem<dim> &problem;
     const unsigned int          n_steps;

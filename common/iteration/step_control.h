@@ -41,13 +41,6 @@ namespace Friction
      * @return the part of v that has been added; may be larger than one.
      */
     virtual double advance(Iterate &x, VectorType &v) = 0;
-
-    /** Of what is kept from step to step, in bytes. */
-    virtual std::size_t
-    memory_consumption() const
-    {
-      return 0;
-    }
   };
 
 
@@ -100,12 +93,6 @@ namespace Friction
                  const Truncation<dim> &truncation) override;
 
     double advance(Iterate &x, VectorType &v) override;
-
-    std::size_t
-    memory_consumption() const override
-    {
-      return Av.memory_consumption() + recombination.memory_consumption();
-    }
 
   private:
     const TrescaFunctional<dim> &functional;
