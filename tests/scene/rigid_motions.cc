@@ -322,19 +322,16 @@ namespace
                  const std::vector<unsigned int> &tops,
                  const std::vector<unsigned int> &bottoms)
   {
-    Triangulation<2> mesh;
+    std::vector<Triangulation<2>>         columns(tops.size());
+    std::vector<const Triangulation<2> *> all;
     for (unsigned int i = 0; i < tops.size(); ++i)
       {
-        Triangulation<2> column, before;
-        GridGenerator::hyper_cube(column);
-        GridTools::shift(Point<2>(2. * i, 0.), column);
-        before.copy_triangulation(mesh);
-        mesh.clear();
-        if (i == 0)
-          mesh.copy_triangulation(column);
-        else
-          GridGenerator::merge_triangulations(before, column, mesh);
+        GridGenerator::hyper_cube(columns[i]);
+        GridTools::shift(Point<2>(2. * i, 0.), columns[i]);
+        all.push_back(&columns[i]);
       }
+    Triangulation<2> mesh;
+    GridGenerator::merge_triangulations(all, mesh);
     for (const auto &cell : mesh.active_cell_iterators())
       {
         const unsigned int i = std::lround((cell->center()[0] - .5) / 2.);
