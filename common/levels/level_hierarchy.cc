@@ -571,7 +571,8 @@ namespace Friction
     };
 
     // Rows of the parents' weights, and their numbers as children.
-    if (k + 2 == levels.size())
+    level.finer_is_last = (k + 2 == levels.size());
+    if (level.finer_is_last)
       {
         std::vector<std::pair<unsigned int, LeafNode>> rows;
         for (const auto &own : finer.own)

@@ -129,7 +129,7 @@ namespace Friction
       bool
       has_leaf_children() const
       {
-        return leaf_child_weights.n_rows() > 0;
+        return finer_is_last;
       }
 
       /** If it is: the same for the leaf nodes of that level, of which those
@@ -228,6 +228,7 @@ namespace Friction
       std::vector<OwnNode>                               own;
       NodeWeights<unsigned int>          parent_weights, child_weights;
       NodeWeights<LeafNode>              leaf_child_weights;
+      bool                               finer_is_last = false;
       NodeRanges                         relaxed;
       std::vector<char>                  edge;
       std::vector<unsigned char>         flags;
