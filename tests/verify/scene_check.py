@@ -72,7 +72,8 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
                        f"section '{section}' is not what the scene says")
         own = level.of_contact(contact)
         nodes = X[level.contact_nodes[own]] @ scene.rotation
-        if law == "Coulomb":
+        # An expression has no value where there are no nodes.
+        if law == "Coulomb" and (len(nodes) or not varies):
             if varies:
                 F = np.broadcast_to(scene.evaluate(F, nodes), len(nodes))
             elif np.ndim(level.friction_coefficient):
