@@ -1,8 +1,8 @@
 """The flags that win, as the compiler sees them.
 
 In a debug tree everything has deal.II's assertions and is optimised all the same,
-but for the programs that studies run, which are those of release mode. In release
-mode nothing is left of either.
+but for the programs of studies and of tests on fine meshes, which are those of
+release mode. In release mode nothing is left of either.
 
 Deprecated functions are warned of. With sanitizers everything is compiled with
 them. Each target of the list that CMake gives has to be among what is compiled.
@@ -34,7 +34,7 @@ def main():
         optimisation, defined, output = flags_of(entry["command"])
         missing -= {output.split(".dir/")[0].split("/")[-1]}
         optimised = build_type == "Release" or "optimised" in output \
-            or "benchmark-" in output
+            or "benchmark-" in output or ".release.dir/" in output
         kinds["optimised" if optimised else "with assertions"] += 1
         if optimised:
             good = (optimisation == "-O2" and "DEBUG" not in defined)

@@ -78,11 +78,19 @@ function(friction_test_program target)
   endif()
 endfunction()
 
-# pickup_tests([FULL name ...]): deal.II's tests of a folder. Those that are named
-# have the label full, the others quick. Their programs are built with all others,
-# so that ctest only runs them.
+# pickup_tests([OPTIMISED] [FULL name ...]): deal.II's tests of a folder. Those that are
+# named have the label full, the others quick. Their programs are built with all others,
+# so that ctest only runs them. They are those of the tree's mode or, OPTIMISED, those of
+# release mode in any tree.
 function(pickup_tests)
-  cmake_parse_arguments(_pickup "" "" "FULL" ${ARGN})
+  cmake_parse_arguments(_pickup "OPTIMISED" "" "FULL" ${ARGN})
+  set(_library friction)
+  if(_pickup_OPTIMISED)
+    set(_library friction-optimised)
+    # For deal.II's macro, and in this function alone.
+    set(CMAKE_BUILD_TYPE Release)
+    set(TEST_LIBRARIES ${_library})
+  endif()
   deal_ii_pickup_tests()
 
   set(_found)
@@ -122,7 +130,7 @@ function(pickup_tests)
     if(_type STREQUAL "EXECUTABLE")
       set_target_properties(${_target} PROPERTIES
         EXCLUDE_FROM_ALL ${FRICTION_TESTS_ON_DEMAND})
-      friction_precompile(${_target} friction)
+      friction_precompile(${_target} ${_library})
       string(REGEX REPLACE "^[^.]*\\.([^.]*)\\..*" "\\1" _name ${_target})
       if(NOT _name IN_LIST _pickup_FULL)
         add_dependencies(tests-quick ${_target})
