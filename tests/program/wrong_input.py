@@ -835,8 +835,9 @@ class Runner:
                     problems.append('not found: ' + pattern)
             is_late = expected == 'later error'
             said = [l for l in result.stdout.splitlines() if not l.startswith('Warning:')]
-            if said and not is_late:
-                problems.append('something on standard output')
+            if bool(said) != is_late:
+                problems.append('no load step is there' if is_late else
+                                'something on standard output')
             left = [os.path.join(d, f) for d, _, fs in os.walk('results') for f in fs
                     if not is_late or '.part' in f]
             if left:
