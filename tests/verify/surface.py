@@ -25,10 +25,11 @@ class Surface:
     def gap(self, x, n, flattest):
         """How far points x may go along unit vectors n; the way back, and negative,
         where they are inside. All points step together, and then the first step in
-        which the sign changes is halved until nothing is left of it."""
+        which the sign changes is halved until nothing is left of it. Steps are half as
+        long as what the suite may overlook."""
         start = self.function(x)
         sign = np.where(start < 0, -1., 1.)
-        steps = 4000
+        steps = 20000
         low, high = np.zeros(len(x)), np.full(len(x), np.inf)
         for k in range(1, steps + 1):
             open_ones = np.flatnonzero(~np.isfinite(high))
