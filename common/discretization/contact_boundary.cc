@@ -206,8 +206,7 @@ namespace Friction
             node.frame[0] = condition.normal == ContactNormal::body
               ? outward
               : condition.obstacle.normal(vertex.point, outward);
-            if (node.frame[0].norm() > 0.)
-              add_node(node, constraints, scene);
+            add_node(node, constraints, scene);
           }
     });
     find_friction(constraints, scene);
@@ -321,9 +320,24 @@ namespace Friction
         if (in_others.norm() > Obstacle<dim>::flattest_cosine)
           normal = in_others / in_others.norm();
       }
-    const double gap = condition.obstacle.gap(node.point, normal);
+    const double gap = normal.norm() > 0.
+      ? condition.obstacle.gap(node.point, normal)
+      : std::numeric_limits<double>::infinity();
     if (!std::isfinite(gap))
-      return;
+      {
+        // Outside it will never touch the obstacle, but inside it would stay.
+        if (condition.obstacle.surfaces_contain(node.point) &&
+            !(constraints.is_fixed(node.node) &&
+              condition.ignores_prescribed_penetration))
+          throw InputError(
+            scene.subject_at_time() + "the node at " + describe(node.point) +
+            " on the contact boundary lies inside the obstacle, and there is "
+            "no way out of it along the normal within the size of the body; '" +
+            condition.obstacle_section() +
+            "/Function' is to be negative in the obstacle and positive where "
+            "the body may be.");
+        return;
+      }
 
     if (constraints.is_fixed(node.node))
       {

@@ -125,6 +125,15 @@ namespace Friction
 
 
 
+  template <int dim>
+  bool
+  LevelSurface<dim>::contains(const Point<dim> &p) const
+  {
+    return function->value(p) < -smallest_step * size * gradient(p).norm();
+  }
+
+
+
   template class LevelSurface<2>;
   template class LevelSurface<3>;
 } // namespace Friction

@@ -54,6 +54,10 @@ namespace Friction
      * function it is that close to the surface, which is where it matters. */
     Way way_from(const Point<dim> &p) const;
 
+    /** Whether @p p is in the obstacle, and deeper than what is too thin to be
+     * found. */
+    bool contains(const Point<dim> &p) const;
+
   private:
     const std::shared_ptr<const Function<dim>> function;
     const double                               size;

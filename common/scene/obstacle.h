@@ -120,6 +120,16 @@ namespace Friction
       return planes.empty() && rods.empty() && surfaces.empty();
     }
 
+    /// Whether a point is in the part of it that is given by a function.
+    bool
+    surfaces_contain(const Point<dim> &p) const
+    {
+      return std::any_of(
+        surfaces.begin(), surfaces.end(), [&](const auto &surface) {
+          return surface->contains(p);
+        });
+    }
+
     /// Of what it consists.
     const std::vector<Plane> &
     half_spaces() const
