@@ -69,8 +69,10 @@ namespace Friction
 
       // Of the energy norm of the error, in units that the load does not
       // change.
-      const double growth = record.estimated_error / record.normal_force /
-        (first.estimated_error / first.normal_force);
+      const double growth =
+        std::max(1.,
+                 record.estimated_error / record.normal_force /
+                   (first.estimated_error / first.normal_force));
       const double rounding = record.certificate * record.normal_force;
       const double normal   = first.normal_force_error / first.normal_force;
 

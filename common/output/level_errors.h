@@ -19,12 +19,13 @@ namespace Friction
    * Later load steps have one mesh only, the last one of the first step, so
    * that their errors are carried over from there:
    * - a width is wrong by as many times its resolution as in the first step;
-   * - the error of a force is that of an energy over a displacement. Relative
-   * to the force it changes like the square of the estimated error in the
-   * energy norm over the normal force, which does not depend on the size of the
-   * load. Tangential forces may begin in a later step, and be taken back: their
-   *   error is relative to the largest so far, with the larger relative error
-   *   of both forces in the first step;
+   * - the error of a force is that of an energy over a displacement.
+   *   Relative to the force it changes like the square of the estimated error
+   *   in the energy norm over the normal force, which does not depend on the
+   *   size of the load; but it does not get smaller. Tangential forces may
+   *   begin in a later step, and be taken back: their error is relative to the
+   *   largest so far, with the larger relative error of both forces in the
+   *   first step;
    * - the peak pressure, which is that of a single node, has none: where other
    *   nodes begin to slide, the first step says nothing of it.
    *

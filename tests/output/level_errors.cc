@@ -1,7 +1,8 @@
 // The errors of a level's quantities. On the meshes of the first load step they
 // are those of error_bars.h. In later steps, on the last of these meshes, they
 // - of forces are in proportion to the load if that is all that changes,
-// - grow like the square of the estimated error of the step,
+// - grow like the square of the estimated error of the step, and do not shrink
+//   with it,
 // - do not get small where a tangential force is taken back,
 // - of widths follow the resolution of zones,
 // - do not depend on what has happened in steps between,
@@ -126,6 +127,13 @@ namespace
       equal(record.contact_half_width_error, last.contact_half_width_error) &&
         equal(record.stick_half_width_error, last.stick_half_width_error),
       "half-widths do not know the load");
+
+    LevelRecord smooth = record;
+    smooth.estimated_error /= 2.;
+    set_errors(smooth, levels, 2);
+    check(equal(smooth.normal_force_error, record.normal_force_error) &&
+            equal(smooth.tangential_force_error, record.tangential_force_error),
+          "half of the estimated error");
 
     record.estimated_error *= 2.;
     record.contact_resolution *= 5.;
