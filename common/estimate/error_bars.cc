@@ -72,6 +72,16 @@ namespace Friction
   double
   error_of_width(const std::vector<ValueOnMesh> &values)
   {
+    return error_of_width(values,
+                          values.empty() ? 0. : values.back().resolution);
+  }
+
+
+
+  double
+  error_of_width(const std::vector<ValueOnMesh> &values,
+                 const double                    resolution)
+  {
     if (values.size() < 3)
       return unknown_error;
     double multiple = 1;
@@ -85,7 +95,7 @@ namespace Friction
         if (step > 0)
           multiple = std::max(multiple, difference(values, i) / step);
       }
-    return safety * multiple * values.back().resolution;
+    return safety * multiple * resolution;
   }
 
 

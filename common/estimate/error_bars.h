@@ -49,6 +49,14 @@ namespace Friction
   double error_of_width(const std::vector<ValueOnMesh> &values);
 
   /**
+   * The same on the last of these meshes for another solution, of which nothing
+   * is known but the resolution of its width: the multiple is that of the
+   * values.
+   */
+  double error_of_width(const std::vector<ValueOnMesh> &values,
+                        const double                    resolution);
+
+  /**
    * A value with as many digits as its error leaves it, and that: "0.0598 ±
    * 0.0003", with the error rounded up to one digit; "0.06 ± ?" if it is
    * unknown.

@@ -20,13 +20,14 @@ namespace Friction
    * Runs several relaxation sweeps through a matrix while reading it from
    * memory only once.
    *
-   * A sweep does little arithmetic and waits for memory. But the second sweep
-   * may relax a node as soon as the first one is through with all neighbours of
-   * that node; it then finds everything still in the cache. The nodes are cut
-   * into chunks of consecutive numbers, and each sweep follows the one before
-   * it at the distance that the couplings demand. Each node sees exactly the
-   * values it would see if the sweeps ran one after the other, so that the
-   * result is the same to the last bit.
+   * A sweep does little arithmetic and takes not much longer than reading the
+   * matrix, if that is larger than the cache. But the second sweep may relax a
+   * node as soon as the first one is through with all neighbours of that node;
+   * it then finds everything still in the cache. The nodes are cut into chunks
+   * of consecutive numbers, and each sweep follows the one before it at the
+   * distance that the couplings demand. Each node sees exactly the values it
+   * would see if the sweeps ran one after the other, so that the result is the
+   * same to the last bit.
    *
    * With several processes each sweep works with the ghost values that the
    * sweep before it has left behind, one exchange per sweep. It begins as soon

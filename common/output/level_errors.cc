@@ -1,6 +1,8 @@
 #include <common/estimate/error_bars.h>
 #include <common/output/level_errors.h>
 
+#include <algorithm>
+
 namespace Friction
 {
   namespace
@@ -8,22 +10,83 @@ namespace Friction
     using Member = double LevelRecord::*;
 
     std::vector<ValueOnMesh>
-    values_of(const std::vector<LevelRecord> &before,
-              const LevelRecord              &last,
+    values_of(const std::vector<LevelRecord> &levels,
               const Member                    value,
               const Member                    resolution)
     {
       std::vector<ValueOnMesh> values;
-      const auto               add = [&](const LevelRecord &record) {
+      for (const LevelRecord &record : levels)
         values.push_back({double(record.dofs),
                           record.*value,
                           resolution != nullptr ? record.*resolution : 0.});
-      };
-      for (const LevelRecord &record : before)
-        if (record.level < last.level && record.load_step == last.load_step)
-          add(record);
-      add(last);
       return values;
+    }
+
+
+
+    // From the levels of the first load step, of which this is the last one.
+    void
+    set_errors_of_first_step(LevelRecord                    &record,
+                             const std::vector<LevelRecord> &levels,
+                             const unsigned int              dim)
+    {
+      const auto smooth =
+        [&](const Member value, const Member resolution, const double scale) {
+          const double error =
+            error_of_smooth_value(values_of(levels, value, resolution), dim);
+          return error < 0 ? error : error + record.certificate * scale;
+        };
+      record.normal_force_error =
+        smooth(&LevelRecord::normal_force, nullptr, record.normal_force);
+      record.tangential_force_error =
+        smooth(&LevelRecord::tangential_force, nullptr, record.normal_force);
+      constexpr unsigned int fewest      = 5;
+      const bool             is_resolved = record.contact_nodes >= fewest &&
+        (record.sticky_nodes == 0 || record.sticky_nodes > 2);
+      record.max_pressure_error = is_resolved
+        ? smooth(&LevelRecord::max_pressure,
+                 &LevelRecord::pressure_resolution,
+                 record.max_pressure)
+        : unknown_error;
+    }
+
+
+
+    // On the mesh of @p first, the last level of the first load step.
+    // @param largest_tangential_force  of this step and those before.
+    void
+    set_errors_of_later_step(LevelRecord       &record,
+                             const LevelRecord &first,
+                             const double       largest_tangential_force)
+    {
+      record.normal_force_error     = unknown_error;
+      record.tangential_force_error = unknown_error;
+      record.max_pressure_error     = unknown_error;
+      if (!(first.normal_force > 0 && record.normal_force > 0 &&
+            first.estimated_error > 0 && record.estimated_error > 0 &&
+            first.normal_force_error >= 0))
+        return;
+
+      // Of the energy norm of the error, in units that the load does not
+      // change.
+      const double growth =
+        std::max(1.,
+                 record.estimated_error / record.normal_force /
+                   (first.estimated_error / first.normal_force));
+      const double rounding = record.certificate * record.normal_force;
+      const double normal   = first.normal_force_error / first.normal_force;
+
+      // A sum of tangential forces that is next to nothing has no relative
+      // error.
+      const double tangential =
+        first.tangential_force > 1e-6 * first.normal_force
+        ? first.tangential_force_error / first.tangential_force
+        : 0.;
+      record.normal_force_error =
+        growth * growth * normal * record.normal_force + rounding;
+      record.tangential_force_error = growth * growth *
+          std::max(normal, tangential) * largest_tangential_force +
+        rounding;
     }
   } // namespace
 
@@ -34,34 +97,36 @@ namespace Friction
              const std::vector<LevelRecord> &before,
              const unsigned int              dim)
   {
-    const auto smooth =
-      [&](const Member value, const Member resolution, const double scale) {
-        const double error = error_of_smooth_value(
-          values_of(before, record, value, resolution), dim);
-        return error < 0 ? error : error + record.certificate * scale;
-      };
-    record.normal_force_error =
-      smooth(&LevelRecord::normal_force, nullptr, record.normal_force);
-    record.tangential_force_error =
-      smooth(&LevelRecord::tangential_force, nullptr, record.normal_force);
-    constexpr unsigned int fewest      = 5;
-    const bool             is_resolved = record.contact_nodes >= fewest &&
-      (record.sticky_nodes == 0 || record.sticky_nodes > 2);
-    record.max_pressure_error = is_resolved
-      ? smooth(&LevelRecord::max_pressure,
-               &LevelRecord::pressure_resolution,
-               record.max_pressure)
-      : unknown_error;
+    // The meshes are those of the first step.
+    std::vector<LevelRecord> meshes;
+    double                   largest = record.tangential_force;
+    for (const LevelRecord &level : before)
+      if (level.level < record.level)
+        {
+          if (level.load_step == 1)
+            meshes.push_back(level);
+          else
+            largest = std::max(largest, level.tangential_force);
+        }
+    if (record.load_step == 1)
+      {
+        meshes.push_back(record);
+        set_errors_of_first_step(record, meshes, dim);
+      }
+    else if (!meshes.empty())
+      set_errors_of_later_step(
+        record,
+        meshes.back(),
+        std::max(largest, meshes.back().tangential_force));
     record.contact_half_width_error =
-      error_of_width(values_of(before,
-                               record,
+      error_of_width(values_of(meshes,
                                &LevelRecord::contact_half_width,
-                               &LevelRecord::contact_resolution));
-    record.stick_half_width_error =
-      error_of_width(values_of(before,
-                               record,
-                               &LevelRecord::stick_half_width,
-                               &LevelRecord::stick_resolution));
+                               &LevelRecord::contact_resolution),
+                     record.contact_resolution);
+    record.stick_half_width_error = error_of_width(
+      values_of(
+        meshes, &LevelRecord::stick_half_width, &LevelRecord::stick_resolution),
+      record.stick_resolution);
   }
 
 

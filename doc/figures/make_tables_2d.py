@@ -72,11 +72,11 @@ def outer_start(runs):
             " level |    dof outer  Jac |     Q1   with centres |"
             "   outer  Jac  7th change |   outer  Jac  7th change"]
     for line in (runs / "outer-start.txt").read_text().splitlines()[1:]:
-        mesh, _, forces, zero = (part.split() for part in line.split("|"))
+        mesh, _, forces, zero, _ = (part.split() for part in line.split("|"))
         dof, _, _, outer, jac, _, _ = thesis.get(int(mesh[0]), [None] * 7)
         rows.append(f" {mesh[0]:>5} | {show(dof):>6} {show(outer):>5} {show(jac):>4} |"
                     f" {mesh[1]:>6} {mesh[2]:>14} |")
-        for outer, jac, _, seventh in (forces, zero):
+        for outer, jac, _, seventh, _ in (forces, zero):
             rows[-1] += (f"   {outer:>5} {jac:>4}  "
                          f"{'-' if float(seventh) == 0 else seventh:>10} |")
         rows[-1] = rows[-1].rstrip(" |")

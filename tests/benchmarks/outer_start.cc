@@ -3,17 +3,20 @@
 // On a mesh that is twice as fine these are too large by a factor of 2^(dim-1),
 // so that the first relative change is about one in two dimensions, as it is
 // from zero. Stresses, which are what this suite interpolates, begin much
-// closer.
+// closer. Beside them are the cycles of Algorithm 3 from the same starts.
 //
 // outer_start DIM SCENE [SECTION/ENTRY=VALUE ...]
 //
 // The scene has to ask for Algorithm 2. A row per mesh: its level, the degrees
 // of freedom, and those that there would be with one more node per cell, as in
 // the thesis; nodes in contact and sticking nodes; and for each start the outer
-// iterations, all cycles, and the relative change of the normal forces in the
-// first and in the seventh iteration (zero if there is none). Interpolated
-// forces are interpolated stresses times the measure of the coarser mesh, which
-// they are where the contact zone is refined evenly.
+// iterations, all cycles, the relative change of the normal forces in the first
+// and in the seventh iteration (zero if there is none), and the cycles of
+// Algorithm 3; at last, how much larger the last relative increment of
+// Algorithm 3 from stresses is in the energy norm, which stops it here, than in
+// the Euclidean one, which stops it in the thesis. Interpolated forces are
+// interpolated stresses times the measure of the coarser mesh, which they are
+// where the contact zone is refined evenly.
 
 #include <common/algorithms/nested_iteration.h>
 
@@ -26,6 +29,29 @@ using namespace Friction;
 
 namespace
 {
+  // Energy over Euclidean norm of the last of these many cycles.
+  template <int dim>
+  double
+  ratio_of_norms(NestedIteration<dim> &nest,
+                 SolverSettings        settings,
+                 const unsigned int    n_cycles)
+  {
+    std::array<VectorType, 2> iterates;
+    double                    increment = 0;
+    for (unsigned int i = 0; i < 2; ++i)
+      {
+        ContactState state(0, false);
+        settings.maximum_cycles = n_cycles - 1 + i;
+        increment =
+          nest.solve_with(settings, iterates[i], state).cycles.back().increment;
+      }
+    const double length = iterates[1].l2_norm();
+    iterates[0] -= iterates[1];
+    return increment / (iterates[0].l2_norm() / length);
+  }
+
+
+
   template <int dim>
   void
   print_table(const std::string              &scene,
@@ -37,14 +63,15 @@ namespace
     std::cout << " level     dofs with centres contact sticky";
     for (const std::string start : {"stresses", "forces", "zero"})
       std::cout << " | " << std::setw(9) << std::left << start + ":"
-                << "outer Jac   first  seventh" << std::right;
-    std::cout << std::endl;
+                << "outer Jac   first  seventh  GS" << std::right;
+    std::cout << " | norms" << std::endl;
     nest.begin();
     do
       {
         const VectorType   stresses = *nest.guess()[1];
         std::ostringstream columns;
         columns << std::scientific << std::setprecision(1);
+        double norms = 0;
         for (const double factor : factors)
           {
             *nest.guess()[1] = stresses;
@@ -59,6 +86,15 @@ namespace
                     << std::setw(4) << report.cycles.size() << std::setw(8)
                     << changes.front() << std::setw(9)
                     << (changes.size() < 7 ? 0. : changes[6]);
+            SolverSettings seidel = nest.parameters().solver;
+            seidel.algorithm      = Algorithm::gauss_seidel_like;
+            VectorType         v;
+            ContactState       phases(0, false);
+            const SolverReport other = nest.solve_with(seidel, v, phases);
+            AssertThrow(other.converged, ExcMessage("No solution."));
+            columns << std::setw(4) << other.cycles.size();
+            if (factor == 1. && other.cycles.size() > 1)
+              norms = ratio_of_norms(nest, seidel, other.cycles.size());
             if (factor == 1.)
               nest.accept(u, state, report);
           }
@@ -68,7 +104,8 @@ namespace
                   << std::setw(13)
                   << n_dofs + dim * nest.mesh().n_global_active_cells()
                   << std::setw(8) << nest.state().n_contact() << std::setw(7)
-                  << nest.state().n_sticking() << columns.str() << std::endl;
+                  << nest.state().n_sticking() << columns.str() << " | "
+                  << std::fixed << std::setprecision(1) << norms << std::endl;
     } while (nest.advance());
   }
 } // namespace
