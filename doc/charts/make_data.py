@@ -21,7 +21,7 @@ import numpy as np
 
 import runs
 from chart import DataError, Table
-from stability import COLUMNS
+from map_fields import COLUMNS
 
 BEGIN = time.monotonic()
 
@@ -72,29 +72,28 @@ def run_for(command, log):
                             f"{tail}") from error
 
 
-def judge(solver, row):
-    """Status, iterations and note of a field of a map."""
+def result(solver, row):
+    """The last columns of a field of a map: whether it was solved, iterations,
+    attempts, unknowns, seconds and a note."""
     if row is None:
-        return ["red", "", "did not come to an end"]
-    iterations = int(row["iterations"])
+        return ["no", "", "", "", "", "did not come to an end"]
+    iterations, attempts = int(row["iterations"]), int(row["attempts"])
+    seconds = float(row["setup_seconds"]) + float(row["solve_seconds"])
+    cost = [attempts, row["dofs"], f"{seconds:.4g}"]
     if row["converged"] != "1":
         # How far it came in a given time says more of the machine.
         if row["failure"] or solver == "gauss-seidel":
-            return ["red", "", row["failure"] or "stopped after "
+            return ["no", "", *cost, row["failure"] or "stopped after "
                     f"{runs.LIMIT_OF_RELAXATION} seconds"]
-        return ["red", iterations,
+        return ["no", iterations, *cost,
                 f"certificate {float(row['certificate']):.0e} after "
                 f"{iterations} iterations"]
     if (solver == "gauss-seidel" and
             float(row["solve_seconds"]) >= runs.LIMIT_OF_RELAXATION):
-        return ["amber", "", "stopped after "
+        return ["yes", "", *cost, "stopped after "
                 f"{runs.LIMIT_OF_RELAXATION} seconds, and solved"]
-    if int(row["attempts"]) > 1:
-        return ["amber", iterations,
-                f"attempt {row['attempts']}: {row['attempt']}"]
-    good = (runs.GOOD_STEPS if solver.startswith("newton") else
-            runs.GOOD_CYCLES)
-    return ["green" if iterations <= good else "amber", iterations, ""]
+    return ["yes", iterations, *cost,
+            f"attempt {attempts}: {row['attempt']}" if attempts > 1 else ""]
 
 
 class Measurements:
@@ -260,7 +259,9 @@ class Measurements:
                     for size in case.sizes:
                         rows.append([what.subject, what.problem_axis,
                                      case.problem, what.size_axis, size, solver,
-                                     *judge(solver, results.get((solver, size)))])
+                                     case.easy,
+                                     *result(solver,
+                                             results.get((solver, size)))])
             self.write(f"stability-{what.name}.csv", COLUMNS, rows)
 
     def results_of(self, what, case):
@@ -271,6 +272,7 @@ class Measurements:
                    f"--solvers={','.join(what.solvers)}",
                    f"--limit={runs.LIMIT}",
                    f"--seconds={runs.LIMIT_OF_RELAXATION}",
+                   f"--repeat={runs.REPEAT}",
                    *case.options, *case.overrides]
         given = any(option.startswith("--guess=") for option in case.options)
         results = {}
