@@ -4,7 +4,8 @@
 // starts from the same initial guess, interpolated from the level before and
 // made admissible. It goes on from a level that is not solved, too, and says
 // so. All solvers are judged by the same certificate, evaluated by the same
-// function for all of them.
+// function for all of them. Seconds are those of the processor, which other
+// programs on the same machine disturb little.
 //
 // The solver "default" is the product with its safeguards, as a user gets it;
 // the others that are the product are variants without them.
@@ -185,7 +186,7 @@ namespace Benchmark
   {
     Timer          timer;
     const Progress progress = [&](const unsigned int, const double) {
-      if (timer.wall_time() > limit)
+      if (timer.cpu_time() > limit)
         throw std::runtime_error("it took too long");
     };
     VectorType   u;
