@@ -142,7 +142,7 @@ def describe(field):
              [f"{field.iterations} iterations"])
     if field.seconds is not None:
         words.append(seconds_as_text(field.seconds) +
-                     (", too many for its unknowns" if field.late else ""))
+                     (", too long for its unknowns" if field.late else ""))
     if field.helped:
         words.append(field.note)
     return ", ".join(words)
