@@ -42,7 +42,7 @@ def below_the_message(fields):
             "set-up; slow is what takes more than "
             f"{runs.GOOD_CYCLES} cycles or {runs.GOOD_STEPS} steps of Newton's "
             f"method, or {runs.GOOD_RATIO:g} times the time per unknown that the "
-            f"same solver takes with {fields.easy_names()}.")
+            f"same solver takes in the row {fields.easy_names()}.")
 
 
 def draw(path, output):
