@@ -6,7 +6,8 @@ takes; amber where it took more; red where it did not.
     map_fields.py DATA [--list] [MAP ...]
 
 counts them in all maps, and in how many fields the default is not green while
-another solver is; with --list also says which these are. The data of a map have
+another solver is ('behind'), and one that is green took less time ('slower'); with
+--list also says which these are. The data of a map have
 what was measured and no judgement, which is made here, with the limits of
 runs.py."""
 
@@ -113,14 +114,14 @@ class Fields:
 
     def behind(self):
         """Fields of the first solver that are not green while those of others
-        are, and who these are."""
+        are, and these."""
         result = []
         for field in self.fields.values():
             if field.solver == self.solvers[0] and field.status != "green":
-                better = [solver for solver in self.solvers[1:]
-                          if (other := self.fields.get(
-                              (solver, field.problem, field.size)))
-                          and other.status == "green"]
+                others = [self.fields.get((solver, field.problem, field.size))
+                          for solver in self.solvers[1:]]
+                better = [other for other in others
+                          if other and other.status == "green"]
                 if better:
                     result.append((field, better))
         return result
@@ -132,6 +133,16 @@ def seconds_as_text(seconds):
     milliseconds = 1e3 * seconds
     return (f"{milliseconds:.0f} ms" if milliseconds >= 9.95
             else f"{milliseconds:.1f} ms")
+
+
+def name_and_time(field):
+    return field.solver + ("" if field.seconds is None else
+                           f" ({seconds_as_text(field.seconds)})")
+
+
+def is_slower(field, others):
+    return any(None not in (field.seconds, other.seconds) and
+               other.seconds < field.seconds for other in others)
 
 
 def describe(field):
@@ -157,28 +168,30 @@ def main():
     files = ([options.data / f"stability-{name}.csv" for name in options.maps] or
              sorted(options.data.glob("stability-*.csv")))
     print(f"{'default in the map':20} {'fields':>6} {'green':>6} {'amber':>6} "
-          f"{'red':>6}  behind  seconds")
-    total = [0] * 5
+          f"{'red':>6}  behind  slower  seconds")
+    total = [0] * 6
     try:
         for path in files:
             fields = Fields(path)
             first, behind = fields.solvers[0], fields.behind()
             counts = [fields.count(first, "green", "amber", "red"),
                       *(fields.count(first, status)
-                        for status in ("green", "amber", "red")), len(behind)]
+                        for status in ("green", "amber", "red")),
+                      len(behind), sum(is_slower(*pair) for pair in behind)]
             total = [a + b for a, b in zip(total, counts)]
             print(f"{path.stem[len('stability-'):]:20} " +
-                  " ".join(f"{n:6}" for n in counts[:4]) + f" {counts[4]:7}  " +
+                  " ".join(f"{n:6}" for n in counts[:4]) +
+                  " ".join(f"{n:8}" for n in counts[4:]) + "  " +
                   ("known" if fields.has_seconds else "not known"))
             if options.list:
                 for field, better in behind:
                     print(f"    {field.problem}, {fields.size_axis} "
                           f"{field.size}: {describe(field)}; green: "
-                          f"{', '.join(better)}")
+                          f"{', '.join(map(name_and_time, better))}")
     except (FieldError, OSError) as error:
         sys.exit(str(error))
     print(f"{'all':20} " + " ".join(f"{n:6}" for n in total[:4]) +
-          f" {total[4]:7}")
+          " ".join(f"{n:8}" for n in total[4:]))
 
 
 if __name__ == "__main__":

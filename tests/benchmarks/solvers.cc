@@ -28,7 +28,7 @@
 // --levels   those on which the solvers run, in place of the last one.
 // --limit    seconds after which any solver is stopped, and has failed.
 // --repeat   a solver that takes less than so many seconds solves the same
-//            problem again and again until they have passed, five times at
+//            problem again and again until they have passed, ten times at
 //            most, and the shortest time counts.
 // --guess    interpolated (that of the nested iteration), or another one on the
 //            first mesh: zero, random, inside, lifted; see guesses.h.
@@ -225,7 +225,7 @@ namespace Benchmark
              const std::string &name,
              const double       repeat)
   {
-    constexpr unsigned int most_times = 5;
+    constexpr unsigned int most_times = 10;
     const auto             seconds    = [](const Result &result) {
       return result.setup_seconds + result.solve_seconds;
     };
