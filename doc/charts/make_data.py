@@ -3,7 +3,7 @@
 
     make_data.py --bin2d=PROGRAM --bin3d=PROGRAM --precision=PROGRAM
         --solvers=PROGRAM --scenes2d=FOLDER --scenes3d=FOLDER --runs=FOLDER
-        --data=FOLDER [--quick] [--only=PART,...]
+        --data=FOLDER [--quick] [--only=PART,...] [--maps=NAME,...] [--jobs=N]
 
 The parts are precision, cycles, solvers, stopping and stability. What is
 measured, and on which meshes, stands in runs.py. Nothing is written of a run that
@@ -14,6 +14,8 @@ import csv
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 import h5py
@@ -253,8 +255,10 @@ class Measurements:
         for what in maps:
             say(f"stability: {what.name}")
             rows = []
-            for case in what.cases:
-                results = self.results_of(what, case)
+            # Only programs run side by side, whose seconds are their own.
+            with ThreadPoolExecutor(self.options.jobs) as pool:
+                found = list(pool.map(partial(self.results_of, what), what.cases))
+            for case, results in zip(what.cases, found):
                 for solver in what.solvers:
                     for size in case.sizes:
                         rows.append([what.subject, what.problem_axis,
@@ -315,6 +319,9 @@ def main():
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--maps", help="names of stability maps, the others are "
                         "left as they are")
+    parser.add_argument("--jobs", type=int, default=1, help="how many problems of "
+                        "a stability map are solved at a time; their seconds are "
+                        "those of the processor")
     parser.add_argument("--only", default=",".join(runs.PARTS))
     options = parser.parse_args()
     measurements = Measurements(options)

@@ -201,7 +201,7 @@ MAPPED = ("default", "algorithm 3", "algorithm 2", "algorithm 3 monotone",
 # (and all of a case after so many times that). Gauss-Seidel, which has no notion of
 # failure, is stopped earlier.
 GOOD_CYCLES, GOOD_STEPS, GOOD_RATIO = 25, 20, 3
-LIMIT, LIMIT_OF_CASE = 20, 15
+LIMIT, LIMIT_OF_CASE = 30, 10
 LIMIT_OF_RELAXATION = 2
 
 # Solutions that take less than so many seconds are repeated, and the shortest time
