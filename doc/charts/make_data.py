@@ -3,7 +3,7 @@
 
     make_data.py --bin2d=PROGRAM --bin3d=PROGRAM --precision=PROGRAM
         --solvers=PROGRAM --scenes2d=FOLDER --scenes3d=FOLDER --runs=FOLDER
-        --data=FOLDER [--quick] [--only=PART,...]
+        --data=FOLDER [--quick] [--only=PART,...] [--maps=NAME,...] [--jobs=N]
 
 The parts are precision, cycles, solvers, stopping and stability. What is
 measured, and on which meshes, stands in runs.py. Nothing is written of a run that
@@ -14,6 +14,8 @@ import csv
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 import h5py
@@ -21,7 +23,7 @@ import numpy as np
 
 import runs
 from chart import DataError, Table
-from stability import COLUMNS
+from map_fields import COLUMNS
 
 BEGIN = time.monotonic()
 
@@ -72,29 +74,28 @@ def run_for(command, log):
                             f"{tail}") from error
 
 
-def judge(solver, row):
-    """Status, iterations and note of a field of a map."""
+def result(solver, row):
+    """The last columns of a field of a map: whether it was solved, iterations,
+    attempts, unknowns, seconds and a note."""
     if row is None:
-        return ["red", "", "did not come to an end"]
-    iterations = int(row["iterations"])
+        return ["no", "", "", "", "", "did not come to an end"]
+    iterations, attempts = int(row["iterations"]), int(row["attempts"])
+    seconds = float(row["setup_seconds"]) + float(row["solve_seconds"])
+    cost = [attempts, row["dofs"], f"{seconds:.4g}"]
     if row["converged"] != "1":
         # How far it came in a given time says more of the machine.
         if row["failure"] or solver == "gauss-seidel":
-            return ["red", "", row["failure"] or "stopped after "
+            return ["no", "", *cost, row["failure"] or "stopped after "
                     f"{runs.LIMIT_OF_RELAXATION} seconds"]
-        return ["red", iterations,
+        return ["no", iterations, *cost,
                 f"certificate {float(row['certificate']):.0e} after "
                 f"{iterations} iterations"]
     if (solver == "gauss-seidel" and
             float(row["solve_seconds"]) >= runs.LIMIT_OF_RELAXATION):
-        return ["amber", "", "stopped after "
+        return ["yes", "", *cost, "stopped after "
                 f"{runs.LIMIT_OF_RELAXATION} seconds, and solved"]
-    if int(row["attempts"]) > 1:
-        return ["amber", iterations,
-                f"attempt {row['attempts']}: {row['attempt']}"]
-    good = (runs.GOOD_STEPS if solver.startswith("newton") else
-            runs.GOOD_CYCLES)
-    return ["green" if iterations <= good else "amber", iterations, ""]
+    return ["yes", iterations, *cost,
+            f"attempt {attempts}: {row['attempt']}" if attempts > 1 else ""]
 
 
 class Measurements:
@@ -254,13 +255,17 @@ class Measurements:
         for what in maps:
             say(f"stability: {what.name}")
             rows = []
-            for case in what.cases:
-                results = self.results_of(what, case)
+            # Only programs run side by side, whose seconds are their own.
+            with ThreadPoolExecutor(self.options.jobs) as pool:
+                found = list(pool.map(partial(self.results_of, what), what.cases))
+            for case, results in zip(what.cases, found):
                 for solver in what.solvers:
                     for size in case.sizes:
                         rows.append([what.subject, what.problem_axis,
                                      case.problem, what.size_axis, size, solver,
-                                     *judge(solver, results.get((solver, size)))])
+                                     case.easy,
+                                     *result(solver,
+                                             results.get((solver, size)))])
             self.write(f"stability-{what.name}.csv", COLUMNS, rows)
 
     def results_of(self, what, case):
@@ -271,6 +276,7 @@ class Measurements:
                    f"--solvers={','.join(what.solvers)}",
                    f"--limit={runs.LIMIT}",
                    f"--seconds={runs.LIMIT_OF_RELAXATION}",
+                   f"--repeat={runs.REPEAT}",
                    *case.options, *case.overrides]
         given = any(option.startswith("--guess=") for option in case.options)
         results = {}
@@ -313,6 +319,9 @@ def main():
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--maps", help="names of stability maps, the others are "
                         "left as they are")
+    parser.add_argument("--jobs", type=int, default=1, help="how many problems of "
+                        "a stability map are solved at a time; their seconds are "
+                        "those of the processor")
     parser.add_argument("--only", default=",".join(runs.PARTS))
     options = parser.parse_args()
     measurements = Measurements(options)

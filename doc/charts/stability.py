@@ -1,79 +1,72 @@
 """Chart 5: which solver solves which problem, in maps: green where all is well,
 amber where it took more than it should or needed help, red where it failed."""
 
-import csv
 import textwrap
 
 import numpy as np
 from matplotlib.patches import Rectangle
 
-from chart import DataError, Table, headline, plt, save
+import runs
+from chart import DataError, headline, plt, save
+from map_fields import FieldError, Fields, seconds_as_text
 
-COLUMNS = ("map", "problem_axis", "problem", "size_axis", "size", "solver",
-           "status", "iterations", "note")
 # Light enough for black figures on them; the grey values differ as well, and so
 # do hatch and symbol.
-STATUS = {"green": ("#9AD9C3", "", "", "solved"),
-          "amber": ("#F5D384", "...", "~", "solved, with help or slowly"),
-          "red": ("#D9825B", "xxxx", "\u00d7", "not solved")}
+STATUS = {"green": ("#9AD9C3", "", "solved"),
+          "amber": ("#F5D384", "...", "solved, slowly (~) or with help (+)"),
+          "red": ("#D9825B", "xxxx", "not solved")}
+SYMBOLS = {"green": "", "amber": "~", "red": "\u00d7"}
 
 
-def text_columns(path):
-    """All columns as text: problems and sizes are names, even if they look like
-    numbers, and keep the order in which they come."""
-    with open(path, newline="") as file:
-        rows = list(csv.DictReader(line for line in file
-                                   if not line.startswith("#")))
-    return {name: [row[name] for row in rows] for name in COLUMNS}
+def message(fields):
+    def result(solver):
+        return (f"{fields.count(solver, 'green')} and "
+                f"{fields.count(solver, 'green', 'amber')}")
 
-
-def message(columns):
-    solvers = list(dict.fromkeys(columns["solver"]))
-    total = {solver: 0 for solver in solvers}
-    good = dict(total)
-    for solver, status in zip(columns["solver"], columns["status"]):
-        total[solver] += 1
-        good[solver] += status != "red"
-    first = solvers[0]
-    text = f"{first} solves {good[first]} of {total[first]} cases"
-    others = [f"{solver}: {good[solver]}" for solver in solvers[1:]]
+    first, *others = fields.solvers
+    total = fields.count(first, *STATUS)
+    text = (f"{first} is green in {fields.count(first, 'green')} of {total} fields "
+            f"and solves {fields.count(first, 'green', 'amber')}")
     if others:
-        text += " (" + ", ".join(others) + ")"
+        text += " (" + ", ".join(f"{solver}: {result(solver)}"
+                                 for solver in others) + ")"
     return text[0].upper() + text[1:]
 
 
+def below_the_message(fields):
+    if not fields.has_seconds:
+        return (f"Map: {fields.subject}. Numbers are iterations; slow is what takes "
+                f"more than {runs.GOOD_CYCLES} cycles or {runs.GOOD_STEPS} steps of "
+                "Newton's method. Seconds were not kept when this was measured.")
+    return (f"Map: {fields.subject}. Numbers are iterations and the time with "
+            "set-up; slow is what takes more than "
+            f"{runs.GOOD_CYCLES} cycles or {runs.GOOD_STEPS} steps of Newton's "
+            f"method, or {runs.GOOD_RATIO:g} times the time per unknown that the "
+            f"same solver takes in the row {fields.easy_names()}.")
+
+
 def draw(path, output):
-    Table(path, COLUMNS)
-    columns = text_columns(path)
-    unknown = set(columns["status"]) - set(STATUS)
-    if unknown:
-        raise DataError(f"{path}: there is no status '{unknown.pop()}'.")
-    for name in ("map", "problem_axis", "size_axis"):
-        if len(set(columns[name])) != 1:
-            raise DataError(f"{path}: more than one {name}.")
-    problems, sizes, solvers = (list(dict.fromkeys(columns[name]))
-                                for name in ("problem", "size", "solver"))
-    cells = {}
-    for row in zip(*(columns[name] for name in COLUMNS)):
-        key = (row[5], row[2], row[4])
-        if key in cells:
-            raise DataError(f"{path}: {key} is there twice.")
-        cells[key] = (row[6], row[7])
+    try:
+        fields = Fields(path)
+    except (FieldError, OSError) as error:
+        raise DataError(str(error)) from error
+    problems, sizes, solvers = fields.problems, fields.sizes, fields.solvers
 
     # Panels side by side, as many as fit into the width of a page.
     longest = max(len(problem) for problem in problems)
     margin = max(0.35 + 0.068 * longest,
-                 0.2 + 0.06 * len(columns["problem_axis"][0]))
+                 0.2 + 0.06 * len(fields.problem_axis))
     # The name of a solver must fit above its panel.
     name_width = 0.066 * max(map(len, solvers))
-    cell_width, cell_height = max(0.42, name_width / len(sizes)), 0.26
+    cell_width = max(0.45, name_width / len(sizes))
+    cell_height = 0.33 if fields.has_seconds else 0.26
     panel_width = cell_width * len(sizes) + 0.16
     per_row = int(np.clip((7 - margin) // panel_width, 1, len(solvers)))
     cell_width *= min(1.25, (7 - margin - 0.12) / (panel_width * per_row))
     n_rows = -(-len(solvers) // per_row)
     panel_height = cell_height * len(problems)
-    subject = f"Map: {columns['map'][0]}. Numbers are iterations."
-    title_lines = (len(textwrap.wrap(message(columns), 77)) +
+    subject = below_the_message(fields)
+    title_lines = (len(textwrap.wrap(message(fields), 77)) +
                    0.8 * (len(textwrap.wrap(subject, 111)) - 1))
     slanted = max(map(len, sizes)) >= 6
     foot = 0.3 + (0.045 * max(map(len, sizes)) if slanted else 0.08)
@@ -99,35 +92,50 @@ def draw(path, output):
         axes.set_yticks(np.arange(len(problems)) + 0.5,
                         problems if column == 0 else [""] * len(problems),
                         fontsize=7.5)
-        axes.set_xlabel(columns["size_axis"][0], fontsize=7.5, labelpad=2)
+        axes.set_xlabel(fields.size_axis, fontsize=7.5, labelpad=2)
         if column == 0:
             axes.text(-0.06 / (cell_width * len(sizes)), -0.35,
-                      columns["problem_axis"][0],
+                      fields.problem_axis,
                       ha="right", va="center", fontsize=7.5, color="0.3")
         for r, problem in enumerate(problems):
             for c, size in enumerate(sizes):
-                draw_cell(axes, c, r, cells.get((solver, problem, size)))
+                draw_cell(axes, c, r, fields.fields.get((solver, problem, size)))
     legend(figure, height)
-    headline(figure, message(columns), subject)
+    headline(figure, message(fields), subject)
     name = "stability-" + path.stem.replace("stability-", "") + ".svg"
     save(figure, output, name)
 
 
-def draw_cell(axes, x, y, cell):
-    if cell is None:
+def draw_cell(axes, x, y, field):
+    if field is None:
         axes.text(x + 0.5, y + 0.5, "-", ha="center", va="center", color="0.6")
         return
-    status, iterations = cell
-    color, hatch, symbol, _ = STATUS[status]
+    # The symbol is at the number that is to blame.
+    count = "" if field.iterations is None else str(field.iterations)
+    if field.status == "red":
+        count = SYMBOLS["red"] + (count and " " + count)
+    elif field.helped:
+        count = "+" + count
+    elif field.slow:
+        count = SYMBOLS["amber"] + count
+    time = "" if field.seconds is None else seconds_as_text(field.seconds)
+    if field.solved and field.late:
+        time = SYMBOLS["amber"] + time
+    paint(axes, x, y, field.status, count, time)
+
+
+def paint(axes, x, y, status, count, time=""):
+    color, hatch, _ = STATUS[status]
     axes.add_patch(Rectangle((x + 0.03, y + 0.05), 0.94, 0.9, facecolor=color,
                              edgecolor="0.35" if hatch else "none",
                              linewidth=0, hatch=hatch or None))
     plt.rcParams["hatch.linewidth"] = 0.35
-    text = iterations.strip()
-    label = symbol + text if status != "red" else symbol + (text and " " + text)
-    axes.text(x + 0.5, y + 0.53, label, ha="center", va="center", fontsize=7,
-              bbox={"facecolor": color, "edgecolor": "none", "pad": 0.6}
-              if hatch else None)
+    box = {"facecolor": color, "edgecolor": "none", "pad": 0.4} if hatch else None
+    axes.text(x + 0.5, y + (0.34 if time else 0.53), count, ha="center",
+              va="center", fontsize=7, bbox=box)
+    if time:
+        axes.text(x + 0.5, y + 0.74, time, ha="center", va="center",
+                  fontsize=5.5, bbox=box)
 
 
 def legend(figure, height):
@@ -136,7 +144,7 @@ def legend(figure, height):
     axes.set_ylim(1, 0)
     axes.axis("off")
     x = 0.4
-    for status, (_, _, _, meaning) in STATUS.items():
-        draw_cell(axes, x, 0, (status, ""))
+    for status, (_, _, meaning) in STATUS.items():
+        paint(axes, x, 0, status, SYMBOLS[status])
         axes.text(x + 1.25, 0.55, meaning, va="center", fontsize=8)
         x += 2.6 + 0.24 * len(meaning)

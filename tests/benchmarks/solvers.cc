@@ -4,15 +4,16 @@
 // starts from the same initial guess, interpolated from the level before and
 // made admissible. It goes on from a level that is not solved, too, and says
 // so. All solvers are judged by the same certificate, evaluated by the same
-// function for all of them.
+// function for all of them. Seconds are those of the processor, which other
+// programs on the same machine disturb little.
 //
 // The solver "default" is the product with its safeguards, as a user gets it;
 // the others that are the product are variants without them.
 //
 // Usage: benchmark-solvers 2|3 scene.prm [--solvers=NAME,NAME,...]
 //            [--table=FILE] [--history=FILE] [--every-level] [--levels=L,L,...]
-//            [--seconds=S] [--limit=S] [--guess=NAME] [--inclusion=FACTOR]
-//            [Section/Entry=value ...]
+//            [--seconds=S] [--limit=S] [--repeat=S] [--guess=NAME]
+//            [--inclusion=FACTOR] [Section/Entry=value ...]
 //
 // --table    one line of comma separated values per solver (and level).
 // --history  also the relative energy norm of the error after each iteration on
@@ -26,6 +27,9 @@
 // --seconds  after which Gauss-Seidel is stopped; 120 by default.
 // --levels   those on which the solvers run, in place of the last one.
 // --limit    seconds after which any solver is stopped, and has failed.
+// --repeat   a solver that takes less than so many seconds solves the same
+//            problem again and again until they have passed, ten times at
+//            most, and the shortest time counts.
 // --guess    interpolated (that of the nested iteration), or another one on the
 //            first mesh: zero, random, inside, lifted; see guesses.h.
 // --inclusion  multiplies Young's modulus in a part of the body: it lies at the
@@ -64,6 +68,7 @@ namespace Benchmark
     std::vector<int>         levels;
     double                   seconds   = 120;
     double                   limit     = std::numeric_limits<double>::max();
+    double                   repeat    = 0;
     double                   inclusion = 1;
     std::vector<std::string> overrides;
   };
@@ -101,6 +106,9 @@ namespace Benchmark
         else if (!value(argument, "--limit=").empty())
           options.limit =
             Utilities::string_to_double(value(argument, "--limit="));
+        else if (!value(argument, "--repeat=").empty())
+          options.repeat =
+            Utilities::string_to_double(value(argument, "--repeat="));
         else if (!value(argument, "--inclusion=").empty())
           options.inclusion =
             Utilities::string_to_double(value(argument, "--inclusion="));
@@ -178,7 +186,7 @@ namespace Benchmark
   {
     Timer          timer;
     const Progress progress = [&](const unsigned int, const double) {
-      if (timer.wall_time() > limit)
+      if (timer.cpu_time() > limit)
         throw std::runtime_error("it took too long");
     };
     VectorType   u;
@@ -205,6 +213,32 @@ namespace Benchmark
                 state);
       }
     nest.accept(u, state, report);
+  }
+
+
+
+  // On a small mesh the clock tells more of the machine than of the solver; the
+  // least of several times tells less of it.
+  template <int dim>
+  Result
+  run_solver(Contest<dim>      &contest,
+             const std::string &name,
+             const double       repeat)
+  {
+    constexpr unsigned int most_times = 10;
+    const auto             seconds    = [](const Result &result) {
+      return result.setup_seconds + result.solve_seconds;
+    };
+    Result result  = contest.run(name);
+    double elapsed = seconds(result);
+    for (unsigned int i = 1; i < most_times && elapsed < repeat; ++i)
+      {
+        const Result again = contest.run(name);
+        elapsed += seconds(again);
+        if (seconds(again) < seconds(result))
+          result = again;
+      }
+    return result;
   }
 
 
@@ -291,7 +325,8 @@ namespace Benchmark
             for (const std::string &name : options.solvers)
               {
                 std::cerr << name << std::endl;
-                const Result r = contest.run(name);
+                const Result r = run_solver(
+                  contest, name, options.history.empty() ? options.repeat : 0.);
                 table << parameters.name << ','
                       << parameters.contact.friction_coefficient << ','
                       << parameters.material.poisson_ratio() << ','
@@ -351,7 +386,7 @@ main(int argc, char *argv[])
           std::cerr << "Usage: benchmark-solvers 2|3 scene.prm "
                        "[--solvers=NAME,...] [--table=FILE] [--history=FILE] "
                        "[--every-level] [--levels=L,...] "
-                       "[--seconds=S] [--limit=S] "
+                       "[--seconds=S] [--limit=S] [--repeat=S] "
                        "[--guess=NAME] [--inclusion=FACTOR] "
                        "[Section/Entry=value ...]\n";
           return 2;
