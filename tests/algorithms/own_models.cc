@@ -207,8 +207,8 @@ namespace
   // Half a ring is pressed onto a disc of the same radius. The force that there
   // is has Hertz's pressure and half-width, since the ring is thick where it
   // touches; the largest pressure is in the middle, and everything symmetric.
-  // Nodes lie on the arc, and no more are made: on its chords, pressures would
-  // have peaks.
+  // Nodes lie on the arc, and so close to each other where it touches that it
+  // does not matter that a body from a mesh file is a polygon.
   void
   ring_on_disc()
   {
