@@ -172,8 +172,11 @@ namespace StepFriction2d
         scene.begin_load_step(resumption.load_step);
         force_control.restore(resumption.platens);
         for (const LevelRecord &record : output.levels())
-          stop.add_level(
-            record.error_at_least, record.dofs, record.contraction);
+          {
+            stop.add_level(
+              record.error_at_least, record.dofs, record.contraction);
+            report.next_method = Method(record.next_method);
+          }
       }
     else
       refine_uniformly(*triangulation,
@@ -353,8 +356,10 @@ namespace StepFriction2d
     // Should the iteration get nowhere, which much friction or very long cells
     // can bring about, <code>SafeguardedSolver</code> exchanges parts 3 to
     // 5, and then Algorithm 3 for others; levels and their matrices stay. What
-    // it had to do, the console says; in most scenes it is nothing.
-    SafeguardedSolver<dim> solver(problem, levels, iteration, settings);
+    // it had to do, the console says; in most scenes it is nothing. What the
+    // mesh before was solved with, this one begins with.
+    SafeguardedSolver<dim> solver(
+      problem, levels, iteration, settings, report.next_method);
     setup_seconds = discretization.setup_seconds() + timer.wall_time();
 
     // A scene may give the total force on a part of the boundary instead of its

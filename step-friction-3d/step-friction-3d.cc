@@ -62,8 +62,11 @@ namespace StepFriction3d
                                   nest.checkpoint_vectors());
         nest.resume();
         for (const LevelRecord &record : output.levels())
-          nest.add_level(
-            record.error_at_least, record.dofs, record.contraction);
+          {
+            nest.add_level(
+              record.error_at_least, record.dofs, record.contraction);
+            nest.begin_with(Method(record.next_method));
+          }
       }
     output.check_start(nest.discretization());
   }

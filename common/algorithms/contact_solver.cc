@@ -39,9 +39,10 @@ namespace Friction
 
   template <int dim>
   ContactSolver<dim>::ContactSolver(const Discretization<dim> &discretization,
-                                    const SolverSettings      &settings)
+                                    const SolverSettings      &settings,
+                                    const Method               first)
     : ContactSolver(
-        discretization.dof_handler(), discretization.problem(), settings)
+        discretization.dof_handler(), discretization.problem(), settings, first)
   {}
 
 
@@ -49,7 +50,8 @@ namespace Friction
   template <int dim>
   ContactSolver<dim>::ContactSolver(const DoFHandler<dim>      &dof_handler,
                                     const DiscreteProblem<dim> &the_problem,
-                                    const SolverSettings       &settings)
+                                    const SolverSettings       &settings,
+                                    const Method                first)
     : problem(the_problem)
     , functional(problem)
     , smoother(problem, settings.local_solver)
@@ -63,7 +65,7 @@ namespace Friction
                 *correction,
                 *step_control,
                 settings.smoothing_steps)
-    , safeguarded(problem, all_levels, multigrid, settings)
+    , safeguarded(problem, all_levels, multigrid, settings, first)
   {}
 
 

@@ -18,15 +18,18 @@ namespace Friction
   class ContactSolver
   {
   public:
-    /** Collective. What the problem refers to is kept by reference. */
+    /** Collective. What the problem refers to is kept by reference.
+     * @param first  see SafeguardedSolver. */
     ContactSolver(const Discretization<dim> &discretization,
-                  const SolverSettings      &settings);
+                  const SolverSettings      &settings,
+                  const Method               first = Method::algorithm);
 
     /** The same for another problem on the same mesh: other loads, for example,
      * or another coefficient of friction. */
     ContactSolver(const DoFHandler<dim>      &dof_handler,
                   const DiscreteProblem<dim> &problem,
-                  const SolverSettings       &settings);
+                  const SolverSettings       &settings,
+                  const Method                first = Method::algorithm);
 
     ContactSolver(const ContactSolver &) = delete;
 

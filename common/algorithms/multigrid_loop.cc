@@ -145,7 +145,10 @@ namespace Friction
 
     iteration.begin(x);
     look_at_iterate();
-    double floor_of_norm = 0;
+    double       floor_of_norm = 0;
+    unsigned int worthwhile    = limits.maximum_cycles;
+    if (limits.worthwhile_cycles > 0)
+      worthwhile = std::min(worthwhile, limits.worthwhile_cycles);
     for (unsigned int cycle = 1;; ++cycle)
       {
         CycleInfo info   = {};
@@ -184,7 +187,7 @@ namespace Friction
             (limits.patience > 0 &&
              result.stalls(
                std::max(limits.inner_tolerance, limits.energy_tolerance / size),
-               limits.maximum_cycles,
+               worthwhile,
                limits.patience)))
           break;
       }

@@ -94,10 +94,10 @@ namespace Friction
 
     unsigned int maximum_cycles = 200;
 
-    /// End early if the iteration would not arrive within that many cycles,
-    /// but not before this number of them, see MultigridResult::stalls(); zero:
-    /// never.
-    unsigned int patience = 0;
+    /// End early if the iteration would not arrive within maximum_cycles, or
+    /// worthwhile_cycles if that is less and not zero, but not before this
+    /// number of them, see MultigridResult::stalls(); zero: never.
+    unsigned int patience = 0, worthwhile_cycles = 0;
 
     /// Ends when these are spent; null for no such limit.
     std::shared_ptr<CycleBudget> budget;

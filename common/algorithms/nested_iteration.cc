@@ -74,7 +74,8 @@ namespace Friction
   {
     Timer timer;
     state = make_guess(solution);
-    ContactSolver<dim> solver(the_discretization, settings);
+    ContactSolver<dim> solver(
+      the_discretization, settings, last_report.next_method);
     solver_setup_seconds = timer.wall_time();
     timer.restart();
     const SolverReport report = force_control.solve(

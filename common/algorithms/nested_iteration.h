@@ -105,6 +105,14 @@ namespace Friction
                    const dealii::types::global_dof_index n_dofs,
                    const double                          contraction);
 
+    /** What the next solution begins with, in a run that is continued;
+     * otherwise that is SolverReport::next_method of the last one. */
+    void
+    begin_with(const Method method)
+    {
+      last_report.next_method = method;
+    }
+
     /** Whether the parameters do not want a finer mesh than this; in later load
      * steps they never do. */
     bool is_last() const;

@@ -59,7 +59,8 @@ namespace Friction
                                   const MonotoneSmoother<dim> &smoother,
                                   Levels<dim>                 &levels,
                                   TruncatedCorrection<dim>    &correction,
-                                  const unsigned int           smoothing_steps)
+                                  const unsigned int           smoothing_steps,
+                                  const unsigned int           n_layers)
     : functional(functional)
     , problem(functional.discrete_problem())
     , levels(levels)
@@ -67,7 +68,10 @@ namespace Friction
     , smoothing_steps(smoothing_steps)
     , truncation(problem)
     , relaxation(problem, smoother)
+    , strip(problem)
     , laws(problem.contact.size())
+    , slopes(problem.contact.size())
+    , n_layers(n_layers)
     , residual(problem.constraints.partitioner())
     , image(residual)
     , defect(residual)
@@ -86,13 +90,18 @@ namespace Friction
         const SemismoothLaw<dim> &law     = laws[p];
         const ContactNode<dim>   &node    = problem.contact[p];
         NodeBlock<dim>            turning = zero_block<dim>();
+        slopes[p]                         = {};
         if (law.tangent == SemismoothLaw<dim>::Tangent::slides)
           for (unsigned int s = 0; s < node.n_free_tangents; ++s)
-            for (unsigned int t = 0; t < node.n_free_tangents; ++t)
-              for (unsigned int c = 0; c < dim; ++c)
-                for (unsigned int r = 0; r < dim; ++r)
-                  turning[c * dim + r] += law.curvature[t * (dim - 1) + s] *
-                    node.frame[s + 1][r] * node.frame[t + 1][c];
+            {
+              for (unsigned int d = 0; d < dim; ++d)
+                slopes[p][d] += law.slope[s] * node.frame[s + 1][d];
+              for (unsigned int t = 0; t < node.n_free_tangents; ++t)
+                for (unsigned int c = 0; c < dim; ++c)
+                  for (unsigned int r = 0; r < dim; ++r)
+                    turning[c * dim + r] += law.curvature[t * (dim - 1) + s] *
+                      node.frame[s + 1][r] * node.frame[t + 1][c];
+            }
         truncation.set(p,
                        truncation.projector(
                          p,
@@ -102,7 +111,8 @@ namespace Friction
       }
     truncation.exchange();
     levels.update(truncation.truncation());
-    relaxation.update(truncation.truncation());
+    relaxation.update(truncation.truncation(), slopes);
+    strip.update(truncation.truncation(), slopes, n_layers);
   }
 
 
@@ -120,15 +130,22 @@ namespace Friction
             times<dim>(truncation.truncation().curvature(node.node).data(),
                        v.begin() + dim * node.node);
           for (unsigned int d = 0; d < dim; ++d)
-            {
-              double slope = 0;
-              for (unsigned int t = 0; t < node.n_free_tangents; ++t)
-                slope += laws[p].slope[t] * node.frame[t + 1][d];
-              Av.local_element(dim * node.node + d) +=
-                turning[d] - slope * normal;
-            }
+            Av.local_element(dim * node.node + d) +=
+              turning[d] - slopes[p][d] * normal;
         }
     truncation.truncation().apply(Av.begin());
+  }
+
+
+
+  template <int dim>
+  void
+  NewtonSolver<dim>::find_defect(const VectorType &r, const VectorType &v)
+  {
+    problem.stiffness.vmult(defect, v);
+    apply_laws(defect, v);
+    scale_owned(defect, -1.);
+    add_owned(defect, 1., r);
   }
 
 
@@ -138,9 +155,25 @@ namespace Friction
   NewtonSolver<dim>::precondition(VectorType &v, const VectorType &r)
   {
     smoothed = 0.;
+    if (strip.is_everything())
+      {
+        strip.add_solution(smoothed, r);
+        v = smoothed;
+        return;
+      }
     relaxation.run(smoothed, r, {smoothing_steps, false}, &defect);
+    if (!strip.is_empty())
+      {
+        strip.add_solution(smoothed, defect);
+        find_defect(r, smoothed);
+      }
     correction.apply(correction_part, defect);
     add_owned(smoothed, 1., correction_part);
+    if (!strip.is_empty())
+      {
+        find_defect(r, smoothed);
+        strip.add_solution(smoothed, defect);
+      }
     relaxation.run(smoothed, r, {smoothing_steps, true});
     v = smoothed;
   }
@@ -413,8 +446,8 @@ namespace Friction
   std::size_t
   NewtonSolver<dim>::memory_consumption() const
   {
-    std::size_t bytes =
-      correction.memory_consumption() + relaxation.memory_consumption();
+    std::size_t bytes = correction.memory_consumption() +
+      relaxation.memory_consumption() + strip.memory_consumption();
     for (const VectorType *vector :
          {&residual, &image, &defect, &smoothed, &correction_part})
       bytes += vector->memory_consumption();

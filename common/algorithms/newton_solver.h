@@ -3,6 +3,7 @@
 
 #include <common/algorithms/multigrid_loop.h>
 #include <common/contact/semismooth_law.h>
+#include <common/iteration/contact_strip.h>
 #include <common/iteration/contact_truncation.h>
 #include <common/iteration/leaf_relaxation.h>
 #include <common/iteration/tresca_functional.h>
@@ -25,9 +26,11 @@ namespace Friction
    * the displacement; so a multigrid cycle for the truncated matrix, a
    * TruncatedCorrection with relaxation of the leaf mesh before and after it,
    * is its preconditioner. What friction adds acts on the contact boundary
-   * only, as an operator of order zero: GMRES takes a number of iterations that
-   * does not grow with the mesh, but with the coefficient of friction as far as
-   * nodes slide.
+   * only, as an operator of order zero, on waves of all lengths alike. The
+   * cycle leaves it to GMRES, which would take the more iterations the larger
+   * the coefficient of friction is. So a strip along sliding nodes is solved
+   * with all terms before the correction and after it, see ContactStrip. If the
+   * strip is the whole body, there is nothing else to be done.
    *
    * Linear problems are solved no more accurately than the step deserves
    * (Eisenstat and Walker 1996). There is no energy that would decrease. What
@@ -39,16 +42,22 @@ namespace Friction
   class NewtonSolver
   {
   public:
+    /// Layers of the strip along sliding nodes. In three dimensions factors of
+    /// a deep one cost more than they save.
+    static constexpr unsigned int usual_layers = dim == 2 ? 8 : 2;
+
     /** References are kept. Collective.
      * @param smoother         for relaxation of the leaf mesh.
      * @param correction       with levels that are @p levels.
      * @param smoothing_steps  on the leaf mesh before and after a correction.
+     * @param n_layers         of the strip, see ContactStrip.
      */
     NewtonSolver(const TrescaFunctional<dim> &functional,
                  const MonotoneSmoother<dim> &smoother,
                  Levels<dim>                 &levels,
                  TruncatedCorrection<dim>    &correction,
-                 const unsigned int           smoothing_steps);
+                 const unsigned int           smoothing_steps,
+                 const unsigned int           n_layers = usual_layers);
 
     /**
      * Solves. Collective.
@@ -82,7 +91,10 @@ namespace Friction
     const unsigned int              smoothing_steps;
     ContactTruncation<dim>          truncation;
     LeafRelaxation<dim>             relaxation;
+    ContactStrip<dim>               strip;
     std::vector<SemismoothLaw<dim>> laws;
+    std::vector<NodeValue<dim>>     slopes; // F e, of each contact node
+    const unsigned int              n_layers;
     unsigned int                    steps = 0;
 
     // f - A u; and vectors of work, an image under A among them.
@@ -98,7 +110,10 @@ namespace Friction
     // for the rest.
     void eliminate_known(VectorType &step, VectorType &rhs);
 
-    // A multigrid cycle.
+    // What is left of @p r.
+    void find_defect(const VectorType &r, const VectorType &v);
+
+    // A multigrid cycle, with the strip before and after coarse levels.
     void precondition(VectorType &v, const VectorType &r);
 
     struct LinearSolution

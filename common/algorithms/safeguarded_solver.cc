@@ -17,7 +17,26 @@ namespace Friction
     // Cycles that a method may take until it has to get somewhere. Where bounds
     // of friction react strongly to the displacement, methods with those of the
     // moment go to and fro from the beginning.
-    constexpr unsigned int patience = 50, short_patience = 15;
+    constexpr unsigned int patience = 50, short_patience = 8;
+
+    // More cycles than that are better saved by another method: on the next
+    // mesh, and where friction is much already on this one, which then may as
+    // well begin with Newton's method if the mesh before took a few less.
+    constexpr unsigned int many_cycles = 25, many_with_much_friction = 20;
+
+    // Up to this number of unknowns the whole matrix is factorised for Newton's
+    // method, in two dimensions.
+    constexpr types::global_dof_index largest_factorised = 20000;
+
+
+
+    // Whoever chooses other parts wants to see them work.
+    bool
+    has_defaults(const SolverSettings &settings)
+    {
+      return settings.algorithm != Algorithm::fixed_point &&
+        settings.coarse_correction == CoarseCorrection::truncated;
+    }
 
 
 
@@ -71,17 +90,39 @@ namespace Friction
   SafeguardedSolver<dim>::SafeguardedSolver(DiscreteProblem<dim>   &problem,
                                             Levels<dim>            &levels,
                                             MonotoneMultigrid<dim> &iteration,
-                                            const SolverSettings   &settings)
+                                            const SolverSettings   &settings,
+                                            const Method            first)
     : problem(problem)
     , levels(levels)
     , iteration(iteration)
     , settings(settings)
+    , next_method(first)
     , budget(std::make_shared<CycleBudget>(settings.total_cycles))
     , whole_steps(
         iteration.functional(), std::min(1., settings.maximum_step_length), 0)
   {
     Assert(&problem == &iteration.problem(),
            ExcMessage("The iteration is that of another problem."));
+  }
+
+
+
+  template <int dim>
+  bool
+  SafeguardedSolver<dim>::much_friction() const
+  {
+    return problem.has_coulomb_friction() &&
+      problem.effective_coefficient() > 1.;
+  }
+
+
+
+  template <int dim>
+  bool
+  SafeguardedSolver<dim>::is_factorised() const
+  {
+    return dim == 2 && !much_friction() &&
+      problem.constraints.partitioner()->size() <= largest_factorised;
   }
 
 
@@ -169,12 +210,14 @@ namespace Friction
       {
         truncated = std::make_unique<TruncatedCorrection<dim>>(
           levels, settings.cycle, settings.coarse_smoothing_steps);
-        newton =
-          std::make_unique<NewtonSolver<dim>>(iteration.functional(),
-                                              iteration.leading_smoother(),
-                                              levels,
-                                              *truncated,
-                                              settings.smoothing_steps);
+        newton = std::make_unique<NewtonSolver<dim>>(
+          iteration.functional(),
+          iteration.leading_smoother(),
+          levels,
+          *truncated,
+          settings.smoothing_steps,
+          is_factorised() ? ContactStrip<dim>::whole_body
+                          : NewtonSolver<dim>::usual_layers);
       }
     SolverReport          report;
     const PhaseCosts      before = phase_costs(problem.communicator());
@@ -265,35 +308,19 @@ namespace Friction
     if (!settings.safeguards)
       return CoulombSolver<dim>(iteration, first).solve(u, state, progress);
 
-    const bool coulomb       = problem.has_coulomb_friction();
-    const bool much_friction = coulomb && problem.effective_coefficient() > 1.;
-    budget->begin_attempt();
-    first.limits.patience      = much_friction ? short_patience : patience;
-    first.limits.budget        = budget;
-    const MPI_Comm     comm    = problem.communicator();
-    const PhaseCosts   before  = phase_costs(comm);
-    const VectorType   initial = u;
+    const bool         coulomb       = problem.has_coulomb_friction();
+    const MPI_Comm     comm          = problem.communicator();
+    const PhaseCosts   before        = phase_costs(comm);
+    const VectorType   initial       = u;
     const ContactState initial_state = state;
     const std::string  name          = name_of(problem, settings);
 
-    SolverReport report =
-      CoulombSolver<dim>(iteration, first).solve(u, state, progress);
-    if (report.converged)
-      return report;
-
     // If nothing succeeds, what violates the law least is returned.
-    SolverReport all;
-    add_attempt(all, name, report);
-    double       smallest_violation = report.certificate.largest();
-    VectorType   best               = u;
-    ContactState best_state         = state;
-    if (!is_finite(u, state, comm) || !std::isfinite(smallest_violation))
-      {
-        smallest_violation = std::numeric_limits<double>::infinity();
-        best               = initial;
-        best_state         = initial_state;
-      }
-    const auto attempt = [&](const std::string &attempt_name,
+    SolverReport report, all;
+    double       smallest_violation = std::numeric_limits<double>::infinity();
+    VectorType   best               = initial;
+    ContactState best_state         = initial_state;
+    const auto   attempt            = [&](const std::string &attempt_name,
                              const auto        &method) {
       report         = method(Search{u, state, progress});
       const double v = report.certificate.largest();
@@ -321,20 +348,66 @@ namespace Friction
       attempt(name + " with algebraic corrections", [&](const Search &search) {
         return algebraic_corrections(search);
       });
+      if (report.converged)
+        next_method = Method::algebraic;
     };
+    bool       is_newton  = false;
+    const auto try_newton = [&]() {
+      if (report.converged || is_newton || !budget->begin_attempt())
+        return;
+      start_anew();
+      is_newton = true;
+      attempt("Newton's method",
+              [&](const Search &search) { return newton_method(search); });
+      if (report.converged)
+        next_method = Method::newton;
+    };
+
+    // What has solved the mesh before is likely to solve this one.
+    const Method begin_with = next_method;
+    if (begin_with == Method::newton && (much_friction() || is_factorised()))
+      try_newton();
+    else if (begin_with == Method::algebraic)
+      try_algebraic_corrections();
+
+    if (!report.converged)
+      {
+        budget->begin_attempt();
+        first.limits.patience = patience;
+        first.limits.budget   = budget;
+        if (much_friction())
+          {
+            first.limits.patience          = short_patience;
+            first.limits.worthwhile_cycles = many_cycles;
+          }
+        if (begin_with != Method::algorithm)
+          start_anew();
+        attempt(name, [&](const Search &search) {
+          return CoulombSolver<dim>(iteration, first)
+            .solve(search.u, search.state, search.progress);
+        });
+        next_method = Method::algorithm;
+        if (report.converged && !is_newton && has_defaults(settings) &&
+            (much_friction()
+               ? report.cycles.size() > many_with_much_friction
+               : report.cycles.size() > many_cycles && is_factorised()))
+          next_method = Method::newton;
+        if (report.converged && begin_with == Method::algorithm)
+          {
+            report.next_method = next_method;
+            return report;
+          }
+      }
 
     // Without much friction hardly anything but coarse levels can be to blame;
     // but not if only the outer iteration of Algorithm 2 has failed.
     const bool outer_failure = coulomb && report.inner_converged &&
       settings.algorithm == Algorithm::fixed_point;
-    if (!outer_failure && !much_friction)
+    if (is_factorised() && !outer_failure)
+      try_newton();
+    if (!outer_failure && !much_friction())
       try_algebraic_corrections();
-    if (!report.converged && budget->begin_attempt())
-      {
-        start_anew();
-        attempt("Newton's method",
-                [&](const Search &search) { return newton_method(search); });
-      }
+    try_newton();
     if (!report.converged && coulomb &&
         budget->begin_attempt(/*is last =*/true))
       {
@@ -347,6 +420,8 @@ namespace Friction
         text << "continuation from less friction, up to the coefficient "
              << solved << ',';
         all.attempts.back().name = text.str();
+        if (report.converged)
+          next_method = Method::newton;
       }
     try_algebraic_corrections();
     if (!report.converged && coulomb &&
@@ -367,9 +442,10 @@ namespace Friction
         state = best_state;
         certify(report, iteration.functional(), u, state);
       }
-    report.cycles   = all.cycles;
-    report.attempts = all.attempts;
-    report.costs    = phase_costs(comm) - before;
+    report.cycles      = all.cycles;
+    report.attempts    = all.attempts;
+    report.costs       = phase_costs(comm) - before;
+    report.next_method = next_method;
     return report;
   }
 

@@ -17,15 +17,18 @@ namespace Friction
    *
    * 1. the algorithm of the settings, by default Algorithm 3. With much
    *    friction it has to show soon that it gets somewhere;
-   * 2. the same with AlgebraicCorrection, where there is not much friction:
-   *    then coarse levels are the trouble, for example because cells are short
-   *    in two of three directions;
-   * 3. Newton's method from the initial guess, see NewtonSolver: where there is
-   *    much friction, the law is;
-   * 4. continuation by the same method: first the problem with less friction,
+   * 2. where there is not much friction, but the whole matrix can be factorised
+   *    soon, Newton's method with these factors from the initial guess, see
+   *    NewtonSolver;
+   * 3. the algorithm of the settings with AlgebraicCorrection, where there is
+   *    not much friction: then coarse levels are the trouble, for example
+   *    because cells are short in two of three directions;
+   * 4. Newton's method, if it has not been tried yet: where there is much
+   *    friction, the law is the trouble;
+   * 5. continuation by the same method: first the problem with less friction,
    *    and its solution as initial guess for more, until all friction is there;
-   * 5. algebraic corrections, if they have not been tried yet;
-   * 6. Algorithm 2 with half of each change of the normal forces, and with
+   * 6. algebraic corrections, if they have not been tried yet;
+   * 7. Algorithm 2 with half of each change of the normal forces, and with
    *    mixing, see MixedFixedPoint. Each of its problems, with given normal
    *    forces, is convex, which makes it slow and reliable.
    *
@@ -40,8 +43,11 @@ namespace Friction
    * SolverSettings::total_cycles cycles at most, but for one in each of them,
    * and each attempt half of those that are left, continuation and the last one
    * all, so that a problem without hope, or a force that cannot be reached,
-   * comes to an end. Without Coulomb's friction the problem is convex, and 4
-   * and 6 are left out.
+   * comes to an end. Without Coulomb's friction the problem is convex, and 5
+   * and 7 are left out.
+   *
+   * What has solved one problem is tried first on the next one, in the next
+   * call of solve() and, by SolverReport::next_method, on the next mesh.
    */
   template <int dim>
   class SafeguardedSolver
@@ -54,13 +60,15 @@ namespace Friction
      * @param iteration  the step to begin with. Other attempts exchange
      *                   some of its parts and share all others.
      * @param settings   that the parts of the iteration have been made with.
+     * @param first      what to try first.
      *
      * References are kept.
      */
     SafeguardedSolver(DiscreteProblem<dim>   &problem,
                       Levels<dim>            &levels,
                       MonotoneMultigrid<dim> &iteration,
-                      const SolverSettings   &settings);
+                      const SolverSettings   &settings,
+                      const Method            first = Method::algorithm);
 
     /**
      * Solves, and certifies the solution; as CoulombSolver::solve(). The report
@@ -83,6 +91,9 @@ namespace Friction
     MonotoneMultigrid<dim> &iteration;
     const SolverSettings    settings;
 
+    // That of the next call of solve(), to judge by those before.
+    Method next_method;
+
     // Of all calls of solve().
     const std::shared_ptr<CycleBudget> budget;
 
@@ -100,6 +111,12 @@ namespace Friction
       ContactState   &state;
       const Progress &progress;
     };
+
+    // The law is to blame if something fails.
+    bool much_friction() const;
+
+    // Newton's method factorises the whole matrix: coarse levels are to blame.
+    bool is_factorised() const;
 
     CoulombSettings later_settings() const;
 

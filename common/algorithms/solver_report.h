@@ -10,6 +10,16 @@
 
 namespace Friction
 {
+  /** What a mesh is solved with, as far as that is known beforehand. */
+  enum class Method : unsigned int
+  {
+    algorithm, ///< that of the settings
+    newton,    ///< NewtonSolver
+    algebraic  ///< that of the settings with AlgebraicCorrection
+  };
+
+
+
   /** One of several attempts at the same problem, see SafeguardedSolver. */
   struct SolverAttempt
   {
@@ -45,9 +55,12 @@ namespace Friction
     /// what the outer iteration of Algorithm 2 adds to it.
     double algebraic_error = 0;
 
-    /// What SafeguardedSolver has tried, in this order; empty if the first
-    /// attempt was enough.
+    /// What SafeguardedSolver has tried, in this order; empty if the algorithm
+    /// of the settings was tried first and was enough.
     std::vector<SolverAttempt> attempts;
+
+    /// What the next mesh may begin with, to judge by this one.
+    Method next_method = Method::algorithm;
 
     /// Algorithm 2: the relative change of the normal forces in each outer
     /// iteration.

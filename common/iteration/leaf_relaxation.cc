@@ -36,9 +36,11 @@ namespace Friction
 
   template <int dim>
   void
-  LeafRelaxation<dim>::update(const Truncation<dim> &truncation)
+  LeafRelaxation<dim>::update(const Truncation<dim>             &truncation,
+                              const std::vector<NodeValue<dim>> &new_slopes)
   {
     current = &truncation;
+    slopes  = &new_slopes;
     for (unsigned int p = 0; p < inverses.size(); ++p)
       {
         const unsigned int    node = problem.contact[p].node;
@@ -68,23 +70,32 @@ namespace Friction
     const ContactBoundary<dim> &contact = problem.contact;
     const NodeBlockMatrix<dim> &matrix  = problem.stiffness.blocks();
 
-    // Takes omega'' v out of a defect at a node.
-    const auto turn = [&](const unsigned int node, double *defect_at_node) {
+    // Of a defect r - A v at a node makes that of the rows with friction.
+    // A part of r in normal direction would be no part of the problem.
+    const auto apply_law = [&](const unsigned int p, double *defect_at_node) {
+      const unsigned int   node = contact[p].node;
       const NodeValue<dim> turning =
         times<dim>(current->curvature(node).data(), v.begin() + dim * node);
+      double normal = 0.;
       for (unsigned int d = 0; d < dim; ++d)
-        defect_at_node[d] -= turning[d];
+        normal += contact[p].normal()[d] * defect_at_node[d];
+      for (unsigned int d = 0; d < dim; ++d)
+        defect_at_node[d] -= turning[d] + (*slopes)[p][d] * normal;
     };
     const auto relax_contact_nodes = [&]() {
       for (unsigned int i = 0; i < contact.size(); ++i)
         {
           const unsigned int p = sweeps.backwards ? contact.size() - 1 - i : i;
-          const unsigned int node      = contact[p].node;
+          // Where normal forces act along a node, it would not settle: they
+          // may answer by more than what has been taken away.
+          if ((*slopes)[p] != NodeValue<dim>{})
+            continue;
+          const unsigned int   node    = contact[p].node;
           const NodeValue<dim> product = matrix.row_times(node, v.begin());
           NodeValue<dim>       rest;
           for (unsigned int d = 0; d < dim; ++d)
             rest[d] = r.local_element(dim * node + d) - product[d];
-          turn(node, rest.data());
+          apply_law(p, rest.data());
           const NodeValue<dim> step =
             times<dim>(inverses[p].data(), rest.data());
           for (unsigned int d = 0; d < dim; ++d)
@@ -110,8 +121,8 @@ namespace Friction
     if (defect == nullptr)
       return;
     problem.stiffness.residual(*defect, r, v);
-    for (const ContactNode<dim> &p : contact)
-      turn(p.node, defect->begin() + dim * p.node);
+    for (unsigned int p = 0; p < contact.size(); ++p)
+      apply_law(p, defect->begin() + dim * contact[p].node);
     current->apply(defect->begin());
   }
 

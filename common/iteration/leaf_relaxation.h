@@ -9,10 +9,12 @@
 namespace Friction
 {
   /**
-   * Block Gauss-Seidel on the leaf mesh for the truncated linear problem
-   * $T(A+\omega'')T\,v=r$: what MonotoneSmoother is without obstacle and
-   * friction. Together with a TruncatedCorrection it is a linear multigrid
-   * cycle, which preconditions Newton's method.
+   * Block Gauss-Seidel on the leaf mesh for the linear problem of a step of
+   * Newton's method, $(T-F\,e\,n^T)(A+\omega'')T\,v=r$: what MonotoneSmoother
+   * is without obstacle and with phases that are known. Nodes with such a term
+   * are left alone, see ContactStrip. Together with a
+   * TruncatedCorrection it is a linear multigrid cycle, which preconditions
+   * Newton's method.
    */
   template <int dim>
   class LeafRelaxation
@@ -24,9 +26,12 @@ namespace Friction
     LeafRelaxation(const DiscreteProblem<dim>  &problem,
                    const MonotoneSmoother<dim> &smoother);
 
-    /** To be called when the truncation has changed. It is kept by reference.
+    /** To be called when something has changed. Both are kept by reference.
+     * @param slopes  of each contact node $F\,e$, by which the normal force in
+     *                its row acts along it; zero where there is no such term.
      */
-    void update(const Truncation<dim> &truncation);
+    void update(const Truncation<dim>             &truncation,
+                const std::vector<NodeValue<dim>> &slopes);
 
     /**
      * Sweeps over all nodes that can move.
@@ -50,6 +55,8 @@ namespace Friction
     const GaussSeidel<dim>     &ordinary_nodes;
     std::vector<NodeBlock<dim>> inverses; // of contact nodes
     const Truncation<dim>      *current = nullptr;
+
+    const std::vector<NodeValue<dim>> *slopes = nullptr;
   };
 } // namespace Friction
 

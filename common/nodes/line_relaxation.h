@@ -28,14 +28,13 @@ namespace Friction
    * Lines are found from the matrix. With the negative traces of blocks as
    * strengths, which for a material that is the same everywhere are those of
    * Laplace's operator, if each component is weighted alike, a node may be in a
-   * line if its two strongest couplings have four fifths of its diagonal
-   * together. With squares they have a quarter, with rectangles 4/5 from an
-   * aspect ratio of 2.6 on (with cuboids short in one direction, from 3.6 on),
-   * and all of it if cells are infinitely long. Lines connect nodes of which
-   * each is one of the two strongest partners of the other. Inside of a line no
-   * node couples to others than the one before and the one after: where it
-   * would, in a bend or a ring, the line is cut. Those of less than three nodes
-   * are dropped.
+   * line if its two strongest couplings have 0.65 of its diagonal together.
+   * With squares they have a quarter, with rectangles 0.65 from an aspect ratio
+   * of 1.8 on (with cuboids short in one direction, from 2.6 on), and all of it
+   * if cells are infinitely long. Lines connect nodes of which each is one of
+   * the two strongest partners of the other. Inside of a line no node couples
+   * to others than the one before and the one after: where it would, in a bend
+   * or a ring, the line is cut. Those of less than three nodes are dropped.
    *
    * With several processes, lines end at the interfaces, and their nodes there
    * get half of interface_majorant() as damping, with which the energy falls;

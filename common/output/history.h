@@ -41,6 +41,9 @@ namespace Friction
     /// How many methods the safeguards had to try; one if all was well.
     unsigned int attempts = 1;
 
+    /// SolverReport::next_method, for a run that is continued.
+    unsigned int next_method = 0;
+
     /// Mean contraction of the increments per cycle; zero if there was but one
     /// cycle. Where forces are given, that of the last solution for them.
     double contraction = 0.;
@@ -106,7 +109,8 @@ namespace Friction
     {
       archive &level &load_step &time &cells                   &dofs;
       archive &contact_nodes                                   &sticky_nodes;
-      archive &outer_iterations &cycles &attempts &contraction &rho_tau;
+      archive &outer_iterations &cycles &attempts &next_method &contraction;
+      archive                                                  &rho_tau;
       archive &rho_tau_contraction &energy &algebraic_error    &normal_force;
       archive                                   &tangential_force;
       archive &max_pressure &contact_half_width &stick_half_width;

@@ -154,6 +154,7 @@ namespace Friction
     record.rho_tau_contraction = report.rho_tau_contraction();
     record.certificate         = report.certificate.largest();
     record.algebraic_error     = report.algebraic_error;
+    record.next_method         = static_cast<unsigned int>(report.next_method);
     record.attempts  = std::max<unsigned int>(1, report.attempts.size());
     records.attempts = describe_attempts(report);
 
