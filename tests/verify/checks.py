@@ -280,13 +280,14 @@ def check_certificate(verdict, found, reported, tolerance):
 
 def check_reported_numbers(verdict, found, reported, tolerance):
     """Of the level. Forces and stresses are compared with no less than those of
-    rounding."""
+    rounding, and the energy with the work of such forces at all nodes, with signs that
+    are random."""
     level, measure = found.level, found.measure
     touches, sticks = level.contact_states > 0, level.contact_states == 2
     friction = np.sum(found.bound * found.slip)
     energy = found.strain_energy - found.work + friction
     parts = max(found.strain_energy + abs(found.work) + friction,
-                found.rounding * found.largest_u) or 1.
+                found.rounding * found.largest_u * np.sqrt(level.n_nodes)) or 1.
     verdict.check("energy", abs(energy - reported["energy"]) / parts, tolerance,
                   "the reported energy is wrong")
     for name, number in (("cells", len(level.cells)),
