@@ -293,6 +293,9 @@ namespace Benchmark
                   << nest.discretization().dof_handler().n_dofs() << " dofs"
                   << std::endl;
         const bool given = (options.guess != "interpolated");
+        // A guess from elsewhere comes without what another mesh has taught.
+        const Method first =
+          given ? Method::algorithm : nest.report().next_method;
         if (given)
           {
             set_guess(nest, options.guess);
@@ -316,7 +319,7 @@ namespace Benchmark
         if (wanted)
           {
             Contest<dim> contest(
-              nest, n_coarser, options.seconds, options.limit);
+              nest, n_coarser, options.seconds, options.limit, first);
             if (last && !options.history.empty())
               {
                 std::cerr << "reference solution" << std::endl;

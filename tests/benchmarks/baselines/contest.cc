@@ -156,11 +156,13 @@ namespace Benchmark
   Contest<dim>::Contest(NestedIteration<dim> &nest,
                         const double          n_coarser,
                         const double          seconds,
-                        const double          limit)
+                        const double          limit,
+                        const Method          first)
     : nest(nest)
     , n_coarser(n_coarser)
     , seconds(seconds)
     , limit(limit)
+    , first(first)
     , points(node_points(nest.discretization()))
     , bonded(bond(
         nest.discretization().problem(), nest.displacement(), nest.state()))
@@ -296,8 +298,10 @@ namespace Benchmark
                             const DiscreteProblem<dim> &problem,
                             Recorder                   &recorder)
   {
-    ContactSolver<dim> solver(
-      nest.discretization().dof_handler(), problem, settings);
+    ContactSolver<dim> solver(nest.discretization().dof_handler(),
+                              problem,
+                              settings,
+                              settings.safeguards ? first : Method::algorithm);
     recorder.end_setup();
     const SolverReport solution =
       solver.solve(u, state, [&](const unsigned int, const double) {

@@ -62,11 +62,14 @@ namespace Benchmark
      *                   if there is none.
      * @param seconds    time after which Gauss-Seidel is stopped.
      * @param limit      time after which any solver is stopped, and has failed.
+     * @param first      what the default begins with, as it would in a run:
+     * what the mesh before has taught.
      */
     Contest(NestedIteration<dim> &nest,
             const double          n_coarser,
             const double          seconds,
-            const double          limit = std::numeric_limits<double>::max());
+            const double          limit = std::numeric_limits<double>::max(),
+            const Method          first = Method::algorithm);
 
     /** From now on errors are written to @p out after each iteration, compared
      * with a solution that is computed now. */
@@ -91,6 +94,7 @@ namespace Benchmark
 
     NestedIteration<dim>         &nest;
     const double                  n_coarser, seconds, limit;
+    const Method                  first;
     const std::vector<Point<dim>> points;
     NodalConstraints<dim>         bonded;
     const ContactBoundary<dim>    nothing;
