@@ -152,6 +152,8 @@ namespace
     check_everywhere(failures > 0, "Algorithm 3 does not arrive");
     check_everywhere(outcome.converged, "Newton's method does");
     check_everywhere(outcome.certificate < 1e-6, "and fulfils the law");
+    check_everywhere(outcome.iterations_per_step <= 6,
+                     "in steps of six iterations at most");
   }
 } // namespace
 
