@@ -377,10 +377,11 @@ namespace Friction
         first.limits.budget   = budget;
         if (much_friction())
           {
-            first.limits.patience          = short_patience;
-            first.limits.worthwhile_cycles = many_cycles;
+            first.limits.patience = short_patience;
+            if (has_defaults(settings) && !is_newton)
+              first.limits.worthwhile_cycles = many_cycles;
           }
-        if (begin_with != Method::algorithm)
+        if (!all.attempts.empty())
           start_anew();
         attempt(name, [&](const Search &search) {
           return CoulombSolver<dim>(iteration, first)
@@ -392,7 +393,7 @@ namespace Friction
                ? report.cycles.size() > many_with_much_friction
                : report.cycles.size() > many_cycles && is_factorised()))
           next_method = Method::newton;
-        if (report.converged && begin_with == Method::algorithm)
+        if (report.converged && all.attempts.size() == 1)
           {
             report.next_method = next_method;
             return report;
