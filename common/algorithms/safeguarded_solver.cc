@@ -210,14 +210,14 @@ namespace Friction
       {
         truncated = std::make_unique<TruncatedCorrection<dim>>(
           levels, settings.cycle, settings.coarse_smoothing_steps);
-        newton = std::make_unique<NewtonSolver<dim>>(
-          iteration.functional(),
-          iteration.leading_smoother(),
-          levels,
-          *truncated,
-          settings.smoothing_steps,
-          is_factorised() ? ContactStrip<dim>::whole_body
-                          : NewtonSolver<dim>::usual_layers);
+        newton =
+          std::make_unique<NewtonSolver<dim>>(iteration.functional(),
+                                              iteration.leading_smoother(),
+                                              levels,
+                                              *truncated,
+                                              settings.smoothing_steps);
+        if (is_factorised())
+          newton->take_whole_body();
       }
     SolverReport          report;
     const PhaseCosts      before = phase_costs(problem.communicator());
