@@ -356,8 +356,8 @@ namespace StepFriction2d
     // Should the iteration get nowhere, which much friction or very long cells
     // can bring about, <code>SafeguardedSolver</code> exchanges parts 3 to
     // 5, and then Algorithm 3 for others; levels and their matrices stay. What
-    // it had to do, the console says; in most scenes it is nothing. What the
-    // mesh before was solved with, this one begins with.
+    // it had to do, the console says; in most scenes it is nothing. What one
+    // mesh needed, the next one begins with.
     SafeguardedSolver<dim> solver(
       problem, levels, iteration, settings, report.next_method);
     setup_seconds = discretization.setup_seconds() + timer.wall_time();

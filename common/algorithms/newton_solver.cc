@@ -59,8 +59,7 @@ namespace Friction
                                   const MonotoneSmoother<dim> &smoother,
                                   Levels<dim>                 &levels,
                                   TruncatedCorrection<dim>    &correction,
-                                  const unsigned int           smoothing_steps,
-                                  const unsigned int           n_layers)
+                                  const unsigned int           smoothing_steps)
     : functional(functional)
     , problem(functional.discrete_problem())
     , levels(levels)
@@ -71,7 +70,6 @@ namespace Friction
     , strip(problem)
     , laws(problem.contact.size())
     , slopes(problem.contact.size())
-    , n_layers(n_layers)
     , residual(problem.constraints.partitioner())
     , image(residual)
     , defect(residual)

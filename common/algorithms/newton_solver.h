@@ -50,14 +50,19 @@ namespace Friction
      * @param smoother         for relaxation of the leaf mesh.
      * @param correction       with levels that are @p levels.
      * @param smoothing_steps  on the leaf mesh before and after a correction.
-     * @param n_layers         of the strip, see ContactStrip.
      */
     NewtonSolver(const TrescaFunctional<dim> &functional,
                  const MonotoneSmoother<dim> &smoother,
                  Levels<dim>                 &levels,
                  TruncatedCorrection<dim>    &correction,
-                 const unsigned int           smoothing_steps,
-                 const unsigned int           n_layers = usual_layers);
+                 const unsigned int           smoothing_steps);
+
+    /** From now on the strip is the whole body. */
+    void
+    take_whole_body()
+    {
+      n_layers = ContactStrip<dim>::whole_body;
+    }
 
     /**
      * Solves. Collective.
@@ -94,8 +99,8 @@ namespace Friction
     ContactStrip<dim>               strip;
     std::vector<SemismoothLaw<dim>> laws;
     std::vector<NodeValue<dim>>     slopes; // F e, of each contact node
-    const unsigned int              n_layers;
-    unsigned int                    steps = 0;
+    unsigned int                    n_layers = usual_layers;
+    unsigned int                    steps    = 0;
 
     // f - A u; and vectors of work, an image under A among them.
     VectorType residual, image, defect, smoothed, correction_part;

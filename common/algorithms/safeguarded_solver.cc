@@ -210,14 +210,14 @@ namespace Friction
       {
         truncated = std::make_unique<TruncatedCorrection<dim>>(
           levels, settings.cycle, settings.coarse_smoothing_steps);
-        newton = std::make_unique<NewtonSolver<dim>>(
-          iteration.functional(),
-          iteration.leading_smoother(),
-          levels,
-          *truncated,
-          settings.smoothing_steps,
-          is_factorised() ? ContactStrip<dim>::whole_body
-                          : NewtonSolver<dim>::usual_layers);
+        newton =
+          std::make_unique<NewtonSolver<dim>>(iteration.functional(),
+                                              iteration.leading_smoother(),
+                                              levels,
+                                              *truncated,
+                                              settings.smoothing_steps);
+        if (is_factorised())
+          newton->take_whole_body();
       }
     SolverReport          report;
     const PhaseCosts      before = phase_costs(problem.communicator());
@@ -377,10 +377,11 @@ namespace Friction
         first.limits.budget   = budget;
         if (much_friction())
           {
-            first.limits.patience          = short_patience;
-            first.limits.worthwhile_cycles = many_cycles;
+            first.limits.patience = short_patience;
+            if (has_defaults(settings) && !is_newton)
+              first.limits.worthwhile_cycles = many_cycles;
           }
-        if (begin_with != Method::algorithm)
+        if (!all.attempts.empty())
           start_anew();
         attempt(name, [&](const Search &search) {
           return CoulombSolver<dim>(iteration, first)
@@ -392,7 +393,7 @@ namespace Friction
                ? report.cycles.size() > many_with_much_friction
                : report.cycles.size() > many_cycles && is_factorised()))
           next_method = Method::newton;
-        if (report.converged && begin_with == Method::algorithm)
+        if (report.converged && all.attempts.size() == 1)
           {
             report.next_method = next_method;
             return report;

@@ -47,7 +47,9 @@ namespace Friction
    * and 7 are left out.
    *
    * What has solved one problem is tried first on the next one, in the next
-   * call of solve() and, by SolverReport::next_method, on the next mesh.
+   * call of solve() and, by SolverReport::next_method, on the next mesh; but
+   * Newton's method only where it would be the second to be tried, that is with
+   * much friction, or where the whole matrix can be factorised soon.
    */
   template <int dim>
   class SafeguardedSolver
@@ -76,9 +78,9 @@ namespace Friction
      * succeeded, residual, energy and certificate are those of what is
      * returned.
      * @param accuracy  if it is positive, relative increments of this size are
-     *                  small enough for the first attempt, and its certificate
-     *                  is not looked at: for solutions on the way to the one
-     *                  that is wanted.
+     *                  small enough for the algorithm of the settings, and its
+     * certificate is not looked at: for solutions on the way to the one that is
+     * wanted.
      */
     SolverReport solve(VectorType     &u,
                        ContactState   &state,
@@ -135,7 +137,7 @@ namespace Friction
 
 
   /** What has been tried, and what came of it, in one sentence; empty if the
-   * first attempt was enough. */
+   * algorithm of the settings was tried first and was enough. */
   std::string describe_attempts(const SolverReport &report);
 } // namespace Friction
 

@@ -46,7 +46,15 @@ namespace Friction
   {
     outer_iterations += report.outer_iterations;
     cycles.insert(cycles.begin(), report.cycles.begin(), report.cycles.end());
-    attempts.insert(
-      attempts.begin(), report.attempts.begin(), report.attempts.end());
+    // The same again, as when a force is searched for, is told once.
+    std::vector<SolverAttempt> earlier = report.attempts;
+    if (!earlier.empty() && !attempts.empty() && earlier.back().converged &&
+        attempts.front().converged &&
+        earlier.back().name == attempts.front().name)
+      {
+        attempts.front().cycles += earlier.back().cycles;
+        earlier.pop_back();
+      }
+    attempts.insert(attempts.begin(), earlier.begin(), earlier.end());
   }
 } // namespace Friction

@@ -325,14 +325,20 @@ namespace Friction
       : std::numeric_limits<double>::infinity();
     if (!std::isfinite(gap))
       {
-        // Outside it will never touch the obstacle, but inside it would stay.
+        // Outside it will never touch the obstacle, but inside it would stay. A
+        // node that looks along the surface, like those at the side of a body
+        // which overlaps the obstacle, has a way out, if not along its normal.
+        const Tensor<1, dim> way =
+          condition.obstacle.normal(node.point, node.normal());
         if (condition.obstacle.surfaces_contain(node.point) &&
+            !(way.norm() > 0. &&
+              std::isfinite(condition.obstacle.gap(node.point, way))) &&
             !(constraints.is_fixed(node.node) &&
               condition.ignores_prescribed_penetration))
           throw InputError(
             scene.subject_at_time() + "the node at " + describe(node.point) +
             " on the contact boundary lies inside the obstacle, and there is "
-            "no way out of it along the normal within the size of the body; '" +
+            "no way out of it within the size of the body; '" +
             condition.obstacle_section() +
             "/Function' is to be negative in the obstacle and positive where "
             "the body may be.");

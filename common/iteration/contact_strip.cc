@@ -5,13 +5,18 @@
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace Friction
 {
   namespace
   {
     constexpr unsigned int outside = std::numeric_limits<unsigned int>::max();
-  }
+
+    // Unknowns of one process in three dimensions, where the factors of more
+    // take longer than what they save, and gigabytes.
+    constexpr unsigned int largest_in_space = 15000;
+  } // namespace
 
 
 
@@ -32,17 +37,19 @@ namespace Friction
     const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
     current = &truncation;
     factors.reset();
-    const std::vector<unsigned int> position = find_nodes(slopes, n_layers);
-
-    const MPI_Comm comm = problem.communicator();
-    empty_everywhere    = !true_on_any_process(!nodes.empty(), comm);
-    everything          = n_layers == whole_body && !empty_everywhere &&
-      Utilities::MPI::n_mpi_processes(comm) == 1;
+    std::vector<unsigned int> position = find_nodes(slopes, n_layers);
+    if (dim == 3 && dim * nodes.size() > largest_in_space)
+      position = find_nodes(slopes, 0);
     if (!nodes.empty())
       {
         fill(slopes, position);
         factorize();
       }
+
+    const MPI_Comm comm = problem.communicator();
+    empty_everywhere    = !true_on_any_process(factors != nullptr, comm);
+    everything          = n_layers == whole_body && !empty_everywhere &&
+      Utilities::MPI::n_mpi_processes(comm) == 1;
   }
 
 
@@ -153,7 +160,9 @@ namespace Friction
 
 
 
-  // A matrix that is singular leaves the strip out: the cycle does without.
+  // The matrix may be singular, as that of a body which slides and is held by
+  // nothing else: the direction that is lost then gets a little stiffness. If
+  // that is not enough, the strip is left out.
   template <int dim>
   void
   ContactStrip<dim>::factorize()
@@ -165,7 +174,21 @@ namespace Friction
       }
     catch (const ExceptionBase &)
       {
-        factors.reset();
+        double largest = 0.;
+        for (unsigned int i = 0; i < matrix.m(); ++i)
+          largest = std::max(largest, std::abs(matrix.diag_element(i)));
+        for (unsigned int i = 0; i < matrix.m(); ++i)
+          matrix.add(i, i, 1e-10 * largest);
+        matrix.compress(VectorOperation::add);
+        factors = std::make_unique<TrilinosWrappers::SolverDirect>(control);
+        try
+          {
+            factors->initialize(matrix);
+          }
+        catch (const ExceptionBase &)
+          {
+            factors.reset();
+          }
       }
   }
 

@@ -47,7 +47,9 @@ namespace Friction
      * @param slopes      of each contact node $F\,e$, zero unless it slides
      *                    and its bound follows the normal force.
      * @param n_layers    how deep it is: the neighbours of sliding nodes are
-     *                    the first layer, their neighbours the next one.
+     *                    the first layer, their neighbours the next one. In
+     *                    three dimensions a process with more than 5000 nodes
+     *                    in its strip takes sliding nodes alone.
      */
     void update(const Truncation<dim>             &truncation,
                 const std::vector<NodeValue<dim>> &slopes,

@@ -16,9 +16,9 @@ namespace Friction
     constexpr unsigned int none = numbers::invalid_unsigned_int;
 
     // The two strongest couplings of a node that belongs to a line, in parts of
-    // its diagonal. In squares they are a quarter of it, in cells that are twice
-    // as long as wide seven tenths, and with these relaxation of single nodes
-    // takes twice as many cycles already.
+    // its diagonal. In squares they are a quarter of it, in cells that are
+    // twice as long as wide seven tenths, and with these relaxation of single
+    // nodes takes twice as many cycles already.
     constexpr double anisotropy = .65;
 
     constexpr unsigned int shortest_line = 3;

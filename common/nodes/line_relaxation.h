@@ -16,7 +16,7 @@ namespace Friction
   /**
    * Gauss-Seidel for lines of strongly coupled nodes, each of them a block.
    *
-   * Where cells are much longer than wide, a node is coupled to its neighbours
+   * Where cells are longer than wide, a node is coupled to its neighbours
    * in the short direction many times more than to all others. Relaxing one
    * node after the other then changes next to nothing: what a node would like
    * to do its neighbours forbid. Relaxing them together takes hardly more

@@ -19,7 +19,7 @@ namespace Friction
   namespace
   {
     // To be increased whenever what is in a checkpoint changes.
-    constexpr unsigned int checkpoint_format = 6;
+    constexpr unsigned int checkpoint_format = 7;
 
 
 

@@ -2,7 +2,9 @@
 // exchanged, and shares levels and matrices with the first attempt: all that it
 // asks for in large pieces of memory is little beside what a solver asks for
 // when it is made. Vectors are not counted, which are allocated in another way;
-// matrices, patterns, and what is known of nodes are.
+// matrices, patterns, and what is known of nodes are, from half of the size of
+// the matrix of the second finest level on. The strip along sliding nodes, which
+// Newton's method makes anew in each of its steps, is smaller.
 
 #include <common/algorithms/nested_iteration.h>
 
@@ -16,7 +18,7 @@
 
 namespace
 {
-  constexpr std::size_t large     = 20000;
+  constexpr std::size_t large     = 150000;
   std::size_t           allocated = 0;
 } // namespace
 
@@ -85,7 +87,7 @@ namespace
   {
     std::cout << name << std::endl;
     std::vector<std::string> overrides = {"Contact/Friction coefficient=10",
-                                          "Refinement/Initial refinements=5",
+                                          "Refinement/Initial refinements=6",
                                           "Refinement/Levels=0"};
     overrides.insert(overrides.end(), entries.begin(), entries.end());
     NestedIteration<2> nest(
