@@ -19,14 +19,17 @@ namespace Friction
     // moment go to and fro from the beginning.
     constexpr unsigned int patience = 50, short_patience = 8;
 
-    // More cycles than that are better saved by another method: on the next
-    // mesh, and where friction is much already on this one, which then may as
-    // well begin with Newton's method if the mesh before took a few less.
-    constexpr unsigned int many_cycles = 25, many_with_much_friction = 20;
+    // Where friction is much, more cycles than that are better saved by
+    // Newton's method: on this mesh, and on the next one if this took a few
+    // less.
+    constexpr unsigned int many_cycles = 25, many_for_the_next = 20;
 
     // Up to this number of unknowns the whole matrix is factorised for Newton's
-    // method, in two dimensions.
-    constexpr types::global_dof_index largest_factorised = 20000;
+    // method, in two dimensions, if nothing else is left. A step takes as long
+    // as a hundred cycles and more then; so it is what a mesh begins with on
+    // small meshes only.
+    constexpr types::global_dof_index largest_factorised       = 20000,
+                                      largest_factorised_first = 3000;
 
 
 
@@ -365,7 +368,9 @@ namespace Friction
 
     // What has solved the mesh before is likely to solve this one.
     const Method begin_with = next_method;
-    if (begin_with == Method::newton && (much_friction() || is_factorised()))
+    if (begin_with == Method::newton &&
+        (much_friction() ||
+         (is_factorised() && u.size() <= largest_factorised_first)))
       try_newton();
     else if (begin_with == Method::algebraic)
       try_algebraic_corrections();
@@ -389,9 +394,7 @@ namespace Friction
         });
         next_method = Method::algorithm;
         if (report.converged && !is_newton && has_defaults(settings) &&
-            (much_friction()
-               ? report.cycles.size() > many_with_much_friction
-               : report.cycles.size() > many_cycles && is_factorised()))
+            much_friction() && report.cycles.size() > many_for_the_next)
           next_method = Method::newton;
         if (report.converged && all.attempts.size() == 1)
           {

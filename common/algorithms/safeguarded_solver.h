@@ -48,8 +48,8 @@ namespace Friction
    *
    * What has solved one problem is tried first on the next one, in the next
    * call of solve() and, by SolverReport::next_method, on the next mesh; but
-   * Newton's method only where it would be the second to be tried, that is with
-   * much friction, or where the whole matrix can be factorised soon.
+   * Newton's method only with much friction, or up to 3000 unknowns in two
+   * dimensions, where factors of the whole matrix cost next to nothing.
    */
   template <int dim>
   class SafeguardedSolver

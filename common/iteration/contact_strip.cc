@@ -2,8 +2,6 @@
 #include <common/parallel/reductions.h>
 #include <common/parallel/run_clock.h>
 
-#include <deal.II/lac/dynamic_sparsity_pattern.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -23,8 +21,13 @@ namespace Friction
   template <int dim>
   ContactStrip<dim>::ContactStrip(const DiscreteProblem<dim> &problem)
     : problem(problem)
+    , position(problem.stiffness.blocks().n_rows(), outside)
+    , contact_node(position)
     , control(1, 0.)
-  {}
+  {
+    for (unsigned int p = 0; p < problem.contact.size(); ++p)
+      contact_node[problem.contact[p].node] = p;
+  }
 
 
 
@@ -37,12 +40,13 @@ namespace Friction
     const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
     current = &truncation;
     factors.reset();
-    std::vector<unsigned int> position = find_nodes(slopes, n_layers);
+    const std::vector<unsigned int> before = nodes;
+    find_nodes(slopes, n_layers);
     if (dim == 3 && dim * nodes.size() > largest_in_space)
-      position = find_nodes(slopes, 0);
+      find_nodes(slopes, 0);
     if (!nodes.empty())
       {
-        fill(slopes, position);
+        fill(slopes, nodes != before);
         factorize();
       }
 
@@ -55,12 +59,13 @@ namespace Friction
 
 
   template <int dim>
-  std::vector<unsigned int>
+  void
   ContactStrip<dim>::find_nodes(const std::vector<NodeValue<dim>> &slopes,
                                 const unsigned int                 n_layers)
   {
     const NodeBlockMatrix<dim> &A = problem.stiffness.blocks();
-    std::vector<unsigned int>   position(A.n_rows(), outside);
+    for (const unsigned int node : nodes)
+      position[node] = outside;
     nodes.clear();
     const auto add = [&](const unsigned int node) {
       if (position[node] == outside && A.row_begin(node) < A.row_end(node))
@@ -86,7 +91,6 @@ namespace Friction
               if (A.column(e) < A.n_rows())
                 add(A.column(e));
       }
-    return position;
   }
 
 
@@ -95,67 +99,86 @@ namespace Friction
   template <int dim>
   void
   ContactStrip<dim>::fill(const std::vector<NodeValue<dim>> &slopes,
-                          const std::vector<unsigned int>   &position)
+                          const bool                         is_new)
   {
-    const NodeBlockMatrix<dim> &A   = problem.stiffness.blocks();
-    const unsigned int          n   = nodes.size();
-    const IndexSet              all = complete_index_set(dim * n);
-    DynamicSparsityPattern      pattern(dim * n, dim * n);
-    for (unsigned int i = 0; i < n; ++i)
-      for (std::size_t e = A.row_begin(nodes[i]); e < A.row_end(nodes[i]); ++e)
-        if (A.column(e) < A.n_rows() && position[A.column(e)] != outside)
-          for (unsigned int r = 0; r < dim; ++r)
-            for (unsigned int c = 0; c < dim; ++c)
-              pattern.add(dim * i + r, dim * position[A.column(e)] + c);
-    matrix.clear();
-    matrix.reinit(all, all, pattern, MPI_COMM_SELF);
-    rhs.reinit(all, MPI_COMM_SELF);
-    solution.reinit(rhs);
-
-    std::vector<unsigned int> contact_node(A.n_rows(), outside);
-    for (unsigned int p = 0; p < slopes.size(); ++p)
-      contact_node[problem.contact[p].node] = p;
-    for (unsigned int i = 0; i < n; ++i)
+    const NodeBlockMatrix<dim> &A         = problem.stiffness.blocks();
+    const auto                  is_inside = [&](const unsigned int node) {
+      return node < A.n_rows() && position[node] != outside;
+    };
+    if (is_new)
       {
-        const unsigned int node  = nodes[i];
-        const double       scale = trace<dim>(A.block(A.row_begin(node))) / dim;
+        const IndexSet            all = complete_index_set(dim * nodes.size());
+        std::vector<unsigned int> n_entries;
+        for (const unsigned int node : nodes)
+          {
+            unsigned int n = 0;
+            for (std::size_t e = A.row_begin(node); e < A.row_end(node); ++e)
+              n += is_inside(A.column(e)) ? dim : 0;
+            n_entries.insert(n_entries.end(), dim, n);
+          }
+        matrix = std::make_unique<TrilinosWrappers::SparseMatrix>(
+          all, MPI_COMM_SELF, n_entries);
+        rhs.reinit(all, MPI_COMM_SELF);
+        solution.reinit(rhs);
+      }
+
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      {
+        const unsigned int      node   = nodes[i];
+        const ContactNode<dim> *slider = nullptr;
+        NodeValue<dim>          slope{};
+        if (contact_node[node] != outside)
+          {
+            slider = &problem.contact[contact_node[node]];
+            slope  = slopes[contact_node[node]];
+          }
+        columns.clear();
+        for (std::vector<double> &row : rows)
+          row.clear();
         for (std::size_t e = A.row_begin(node); e < A.row_end(node); ++e)
           {
             const unsigned int other = A.column(e);
-            if (other >= A.n_rows() || position[other] == outside)
+            if (!is_inside(other))
               continue;
             NodeBlock<dim> block =
               current->truncated_block(node, A.block(e), other);
-            if (contact_node[node] != outside)
+            if (slider != nullptr)
               {
-                const ContactNode<dim> &p = problem.contact[contact_node[node]];
-                const NodeValue<dim>   &slope = slopes[contact_node[node]];
-                NodeBlock<dim>          full;
+                NodeBlock<dim> full;
                 std::copy_n(A.block(e), dim * dim, full.begin());
                 full = times<dim>(full, current->projector(other));
                 for (unsigned int c = 0; c < dim; ++c)
                   {
                     double normal = 0;
                     for (unsigned int d = 0; d < dim; ++d)
-                      normal += p.normal()[d] * full[c * dim + d];
+                      normal += slider->normal()[d] * full[c * dim + d];
                     for (unsigned int r = 0; r < dim; ++r)
                       block[c * dim + r] -= slope[r] * normal;
                   }
               }
             if (other == node)
-              for (unsigned int c = 0; c < dim; ++c)
-                for (unsigned int r = 0; r < dim; ++r)
-                  block[c * dim + r] += current->curvature(node)[c * dim + r] +
-                    scale *
-                      ((r == c ? 1. : 0.) -
-                       current->projector(node)[c * dim + r]);
+              {
+                const double scale = trace<dim>(A.block(e)) / dim;
+                for (unsigned int c = 0; c < dim; ++c)
+                  for (unsigned int r = 0; r < dim; ++r)
+                    block[c * dim + r] +=
+                      current->curvature(node)[c * dim + r] +
+                      scale *
+                        ((r == c ? 1. : 0.) -
+                         current->projector(node)[c * dim + r]);
+              }
             for (unsigned int c = 0; c < dim; ++c)
-              for (unsigned int r = 0; r < dim; ++r)
-                matrix.set(
-                  dim * i + r, dim * position[other] + c, block[c * dim + r]);
+              {
+                columns.push_back(dim * position[other] + c);
+                for (unsigned int r = 0; r < dim; ++r)
+                  rows[r].push_back(block[c * dim + r]);
+              }
           }
+        for (unsigned int r = 0; r < dim; ++r)
+          matrix->set(
+            dim * i + r, columns.size(), columns.data(), rows[r].data());
       }
-    matrix.compress(VectorOperation::insert);
+    matrix->compress(VectorOperation::insert);
   }
 
 
@@ -170,20 +193,20 @@ namespace Friction
     factors = std::make_unique<TrilinosWrappers::SolverDirect>(control);
     try
       {
-        factors->initialize(matrix);
+        factors->initialize(*matrix);
       }
     catch (const ExceptionBase &)
       {
         double largest = 0.;
-        for (unsigned int i = 0; i < matrix.m(); ++i)
-          largest = std::max(largest, std::abs(matrix.diag_element(i)));
-        for (unsigned int i = 0; i < matrix.m(); ++i)
-          matrix.add(i, i, 1e-10 * largest);
-        matrix.compress(VectorOperation::add);
+        for (unsigned int i = 0; i < matrix->m(); ++i)
+          largest = std::max(largest, std::abs(matrix->diag_element(i)));
+        for (unsigned int i = 0; i < matrix->m(); ++i)
+          matrix->add(i, i, 1e-10 * largest);
+        matrix->compress(VectorOperation::add);
         factors = std::make_unique<TrilinosWrappers::SolverDirect>(control);
         try
           {
-            factors->initialize(matrix);
+            factors->initialize(*matrix);
           }
         catch (const ExceptionBase &)
           {
@@ -221,9 +244,10 @@ namespace Friction
   std::size_t
   ContactStrip<dim>::memory_consumption() const
   {
-    return matrix.memory_consumption() +
-      nodes.capacity() * sizeof(unsigned int) + rhs.memory_consumption() +
-      solution.memory_consumption();
+    return (matrix ? matrix->memory_consumption() : 0) +
+      (nodes.capacity() + position.capacity() + contact_node.capacity()) *
+      sizeof(unsigned int) +
+      rhs.memory_consumption() + solution.memory_consumption();
   }
 
 

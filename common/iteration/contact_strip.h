@@ -8,6 +8,7 @@
 #include <deal.II/lac/trilinos_solver.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
+#include <array>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -80,19 +81,24 @@ namespace Friction
     const Truncation<dim>      *current          = nullptr;
     bool                        empty_everywhere = true, everything = false;
 
-    std::vector<unsigned int>                       nodes;
-    TrilinosWrappers::SparseMatrix                  matrix;
+    // Those of the strip, where a node is among them, and where it is among the
+    // contact nodes; `outside` if it is not.
+    std::vector<unsigned int> nodes, position, contact_node;
+
+    std::unique_ptr<TrilinosWrappers::SparseMatrix> matrix;
     SolverControl                                   control;
     std::unique_ptr<TrilinosWrappers::SolverDirect> factors;
     VectorType                                      rhs, solution;
 
-    // Positions in nodes, of those which have one.
-    std::vector<unsigned int>
-    find_nodes(const std::vector<NodeValue<dim>> &slopes,
-               const unsigned int                 n_layers);
+    // Of the rows that are being computed.
+    std::vector<types::global_dof_index>         columns;
+    std::array<std::vector<TrilinosScalar>, dim> rows;
 
-    void fill(const std::vector<NodeValue<dim>> &slopes,
-              const std::vector<unsigned int>   &position);
+    void find_nodes(const std::vector<NodeValue<dim>> &slopes,
+                    const unsigned int                 n_layers);
+
+    // @p is_new  whether the nodes are others than before.
+    void fill(const std::vector<NodeValue<dim>> &slopes, const bool is_new);
 
     void factorize();
   };
