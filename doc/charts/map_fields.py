@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """What the fields of the stability maps say: green where a solver solved the
-problem in few iterations, by itself, and in about the time that an easy problem
+problem in few iterations, at the first attempt, and in about the time that an easy problem
 takes; amber where it took more; red where it did not.
 
     map_fields.py DATA [--list] [MAP ...]

@@ -3,8 +3,8 @@
 // asks for in large pieces of memory is little beside what a solver asks for
 // when it is made. Vectors are not counted, which are allocated in another way;
 // matrices, patterns, and what is known of nodes are, from half of the size of
-// the matrix of the second finest level on. The strip along sliding nodes, which
-// Newton's method makes anew in each of its steps, is smaller.
+// the matrix of the second finest level on. The strip along sliding nodes,
+// which Newton's method makes anew in each of its steps, is smaller.
 
 #include <common/algorithms/nested_iteration.h>
 
