@@ -33,7 +33,7 @@ namespace Friction
 
 
 
-    // Whoever chooses other parts wants to see them work.
+    // A user who chooses other parts wants to see them work.
     bool
     has_defaults(const SolverSettings &settings)
     {

@@ -26,15 +26,6 @@ program = {2: sys.argv[1], 3: sys.argv[2]}
 scenes = {2: sys.argv[3], 3: sys.argv[4]}
 mpiexec, dofs = sys.argv[5], int(sys.argv[6])
 processes = [int(word) for word in sys.argv[7].split(",")]
-environment = dict(
-    os.environ,
-    OMPI_ALLOW_RUN_AS_ROOT="1",
-    OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-    OMPI_MCA_mpi_yield_when_idle="1",
-    OMPI_MCA_rmaps_base_oversubscribe="1",
-    PMIX_MCA_mca_base_suppress_deprecated_warning="1",
-    PRTE_MCA_rmaps_default_mapping_policy=":oversubscribe",
-)
 # What makes a scene take many: the scene with one thing changed, on one process.
 NU = "Material/Poisson ratio=0.3"
 POINTWISE = "Material/Volumetric strain=pointwise"
@@ -73,8 +64,7 @@ def run(dim, scene, n_processes, most, entries):
                    f"Refinement/Maximum dofs={most}", *entries]
         if n_processes > 1:
             command = [mpiexec, "-np", str(n_processes)] + command
-        result = subprocess.run(command, env=environment, text=True,
-                                capture_output=True)
+        result = subprocess.run(command, text=True, capture_output=True)
         if result.returncode != 0:
             sys.exit(" ".join(command) + "\n" + result.stdout + result.stderr)
         with h5py.File(os.path.join(directory, "history.h5")) as file:
