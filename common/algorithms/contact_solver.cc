@@ -1,4 +1,5 @@
 #include <common/algorithms/contact_solver.h>
+#include <common/iteration/aggregate_correction.h>
 
 namespace Friction
 {
@@ -13,6 +14,9 @@ namespace Friction
         case CoarseCorrection::monotone:
           return std::make_unique<MonotoneCorrection<dim>>(
             levels, settings.cycle, settings.coarse_smoothing_steps);
+        case CoarseCorrection::aggregates:
+          return std::make_unique<AggregateCorrection<dim>>(
+            levels, problem, settings.cycle, settings.coarse_smoothing_steps);
         case CoarseCorrection::algebraic:
           return std::make_unique<AlgebraicCorrection<dim>>(
             problem, settings.coarsest_method);

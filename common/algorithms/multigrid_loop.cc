@@ -145,10 +145,9 @@ namespace Friction
 
     iteration.begin(x);
     look_at_iterate();
-    double       floor_of_norm = 0;
-    unsigned int worthwhile    = limits.maximum_cycles;
-    if (limits.worthwhile_cycles > 0)
-      worthwhile = std::min(worthwhile, limits.worthwhile_cycles);
+    double             floor_of_norm = 0;
+    const unsigned int worthwhile =
+      std::min(limits.maximum_cycles, limits.worthwhile_cycles);
     for (unsigned int cycle = 1;; ++cycle)
       {
         CycleInfo info   = {};

@@ -4,6 +4,7 @@
 #include <common/iteration/monotone_multigrid.h>
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -95,9 +96,10 @@ namespace Friction
     unsigned int maximum_cycles = 200;
 
     /// End early if the iteration would not arrive within maximum_cycles, or
-    /// worthwhile_cycles if that is less and not zero, but not before this
-    /// number of them, see MultigridResult::stalls(); zero: never.
-    unsigned int patience = 0, worthwhile_cycles = 0;
+    /// worthwhile_cycles if that is less, but not before this number of them,
+    /// see MultigridResult::stalls(); zero: never.
+    unsigned int patience          = 0;
+    unsigned int worthwhile_cycles = std::numeric_limits<unsigned int>::max();
 
     /// Ends when these are spent; null for no such limit.
     std::shared_ptr<CycleBudget> budget;

@@ -449,7 +449,8 @@ namespace Friction
     for (const VectorType *vector :
          {&residual, &image, &defect, &smoothed, &correction_part})
       bytes += vector->memory_consumption();
-    return bytes + laws.capacity() * sizeof(SemismoothLaw<dim>);
+    return bytes + laws.capacity() * sizeof(SemismoothLaw<dim>) +
+      slopes.capacity() * sizeof(NodeValue<dim>);
   }
 
 

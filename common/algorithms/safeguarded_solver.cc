@@ -24,6 +24,11 @@ namespace Friction
     // less.
     constexpr unsigned int many_cycles = 25, many_for_the_next = 20;
 
+    // The same where materials jump, for levels made of the matrix: cycles
+    // until they are tried, and that they may take themselves.
+    constexpr unsigned int jump_patience = 10, aggregate_patience = 15,
+                           many_aggregate_cycles = 60;
+
     // Up to this number of unknowns the whole matrix is factorised for Newton's
     // method, in two dimensions, if nothing else is left. A step takes as long
     // as a hundred cycles and more then; so it is what a mesh begins with on
@@ -53,6 +58,23 @@ namespace Friction
         return "the multigrid iteration";
       return settings.algorithm == Algorithm::fixed_point ? "Algorithm 2"
                                                           : "Algorithm 3";
+    }
+
+
+
+    // For a solution on the way to the one that is wanted.
+    void
+    ease(CoulombSettings &settings, const double accuracy)
+    {
+      if (accuracy > 0.)
+        {
+          settings.limits.inner_tolerance =
+            std::max(accuracy, settings.limits.inner_tolerance);
+          settings.outer_tolerance =
+            std::max(accuracy, settings.outer_tolerance);
+          settings.certificate_tolerance =
+            std::numeric_limits<double>::infinity();
+        }
     }
 
 
@@ -134,13 +156,44 @@ namespace Friction
   // solution, to the usual tolerance.
   template <int dim>
   CoulombSettings
-  SafeguardedSolver<dim>::later_settings() const
+  SafeguardedSolver<dim>::later_settings(const double accuracy) const
   {
     CoulombSettings result(settings);
+    ease(result, accuracy);
     result.limits.energy_tolerance = 0.;
     result.limits.patience         = patience;
     result.limits.budget           = budget;
     return result;
+  }
+
+
+
+  // Lines in two dimensions are short of nothing but lines.
+  template <int dim>
+  bool
+  SafeguardedSolver<dim>::coarse_cells_may_be_to_blame() const
+  {
+    return has_defaults(settings) && !much_friction() &&
+      levels.hierarchy().n_levels() > 1 &&
+      ((dim == 3 && levels.share_in_lines(levels.n_correction_levels()) > 0) ||
+       materials_jump(problem.stiffness.blocks(), problem.communicator()));
+  }
+
+
+
+  template <int dim>
+  SolverReport
+  SafeguardedSolver<dim>::aggregate_corrections(const Search &search)
+  {
+    if (!aggregates)
+      aggregates = std::make_unique<AggregateCorrection<dim>>(
+        levels, problem, settings.cycle, settings.coarse_smoothing_steps);
+    CoulombSettings limits          = later_settings(search.accuracy);
+    limits.limits.patience          = aggregate_patience;
+    limits.limits.worthwhile_cycles = many_aggregate_cycles;
+    MonotoneMultigrid<dim> best     = iteration.with(*aggregates);
+    return CoulombSolver<dim>(best, limits)
+      .solve(search.u, search.state, search.progress);
   }
 
 
@@ -167,7 +220,7 @@ namespace Friction
   SafeguardedSolver<dim>::algebraic_corrections(const Search &search)
   {
     MonotoneMultigrid<dim> best = without_levels();
-    return CoulombSolver<dim>(best, later_settings())
+    return CoulombSolver<dim>(best, later_settings(search.accuracy))
       .solve(search.u, search.state, search.progress);
   }
 
@@ -179,7 +232,7 @@ namespace Friction
   {
     const VectorType   start       = search.u;
     const ContactState start_state = search.state;
-    CoulombSettings    mixed       = later_settings();
+    CoulombSettings    mixed       = later_settings(search.accuracy);
     mixed.algorithm                = Algorithm::fixed_point;
     mixed.outer_damping            = .5;
     mixed.mixed_outer_iterations   = 10;
@@ -224,11 +277,15 @@ namespace Friction
       }
     SolverReport          report;
     const PhaseCosts      before = phase_costs(problem.communicator());
-    const MultigridResult result = newton->solve(
-      search.u, search.state, later_settings().limits, search.progress);
+    const MultigridResult result =
+      newton->solve(search.u,
+                    search.state,
+                    later_settings(search.accuracy).limits,
+                    search.progress);
     report.set_result(result);
     certify(report, iteration.functional(), search.u, search.state);
-    if (!(report.certificate.largest() <= settings.certificate_tolerance))
+    if (!(report.certificate.largest() <=
+          later_settings(search.accuracy).certificate_tolerance))
       report.converged = false;
     report.costs         = phase_costs(problem.communicator()) - before;
     report.matrix_memory = problem.stiffness.memory_consumption();
@@ -264,7 +321,8 @@ namespace Friction
         VectorType   next            = search.u;
         ContactState next_state      = search.state;
         problem.friction_coefficient = coefficient;
-        report = newton_method({next, next_state, search.progress});
+        report =
+          newton_method({next, next_state, search.progress, search.accuracy});
         cycles.insert(cycles.end(), report.cycles.begin(), report.cycles.end());
         if (report.converged)
           {
@@ -301,13 +359,7 @@ namespace Friction
   {
     const RunScope  part(problem.communicator(), RunPart::solution);
     CoulombSettings first(settings);
-    if (accuracy > 0.)
-      {
-        first.limits.inner_tolerance =
-          std::max(accuracy, first.limits.inner_tolerance);
-        first.outer_tolerance       = std::max(accuracy, first.outer_tolerance);
-        first.certificate_tolerance = std::numeric_limits<double>::infinity();
-      }
+    ease(first, accuracy);
     if (!settings.safeguards)
       return CoulombSolver<dim>(iteration, first).solve(u, state, progress);
 
@@ -325,7 +377,7 @@ namespace Friction
     ContactState best_state         = initial_state;
     const auto   attempt            = [&](const std::string &attempt_name,
                              const auto        &method) {
-      report         = method(Search{u, state, progress});
+      report         = method(Search{u, state, progress, accuracy});
       const double v = report.certificate.largest();
       if (!report.converged && v < smallest_violation &&
           is_finite(u, state, comm))
@@ -354,6 +406,18 @@ namespace Friction
       if (report.converged)
         next_method = Method::algebraic;
     };
+    bool       is_aggregate   = false;
+    const auto try_aggregates = [&]() {
+      if (report.converged || is_aggregate || !budget->begin_attempt())
+        return;
+      start_anew();
+      is_aggregate = true;
+      attempt(
+        name + " with levels made of the matrix",
+        [&](const Search &search) { return aggregate_corrections(search); });
+      if (report.converged)
+        next_method = Method::aggregates;
+    };
     bool       is_newton  = false;
     const auto try_newton = [&]() {
       if (report.converged || is_newton || !budget->begin_attempt())
@@ -374,7 +438,12 @@ namespace Friction
       try_newton();
     else if (begin_with == Method::algebraic)
       try_algebraic_corrections();
+    else if (begin_with == Method::aggregates)
+      try_aggregates();
 
+    // What makes coarse levels of little use.
+    const bool jumps =
+      !report.converged && !is_aggregate && coarse_cells_may_be_to_blame();
     if (!report.converged)
       {
         budget->begin_attempt();
@@ -386,6 +455,11 @@ namespace Friction
             if (has_defaults(settings) && !is_newton)
               first.limits.worthwhile_cycles = many_cycles;
           }
+        else if (jumps)
+          {
+            first.limits.patience          = jump_patience;
+            first.limits.worthwhile_cycles = many_cycles;
+          }
         if (!all.attempts.empty())
           start_anew();
         attempt(name, [&](const Search &search) {
@@ -396,6 +470,9 @@ namespace Friction
         if (report.converged && !is_newton && has_defaults(settings) &&
             much_friction() && report.cycles.size() > many_for_the_next)
           next_method = Method::newton;
+        if (report.converged && jumps &&
+            report.cycles.size() > many_for_the_next)
+          next_method = Method::aggregates;
         if (report.converged && all.attempts.size() == 1)
           {
             report.next_method = next_method;
@@ -407,6 +484,8 @@ namespace Friction
     // but not if only the outer iteration of Algorithm 2 has failed.
     const bool outer_failure = coulomb && report.inner_converged &&
       settings.algorithm == Algorithm::fixed_point;
+    if (jumps)
+      try_aggregates();
     if (is_factorised() && !outer_failure)
       try_newton();
     if (!outer_failure && !much_friction())

@@ -3,6 +3,7 @@
 
 #include <common/algorithms/coulomb_solver.h>
 #include <common/algorithms/newton_solver.h>
+#include <common/iteration/aggregate_correction.h>
 #include <common/iteration/algebraic_correction.h>
 #include <common/iteration/truncated_correction.h>
 
@@ -16,19 +17,24 @@ namespace Friction
    * nowhere, by what may succeed:
    *
    * 1. the algorithm of the settings, by default Algorithm 3. With much
-   *    friction it has to show soon that it gets somewhere;
-   * 2. where there is not much friction, but the whole matrix can be factorised
+   *    friction, or where materials jump, it has to show soon that it gets
+   *    somewhere;
+   * 2. the algorithm of the settings with AggregateCorrection, where there is
+   *    not much friction and materials jump, or cells are stretched in three
+   *    dimensions: coarse functions do not follow borders of materials within
+   *    coarse cells;
+   * 3. where there is not much friction, but the whole matrix can be factorised
    *    soon, Newton's method with these factors from the initial guess, see
    *    NewtonSolver;
-   * 3. the algorithm of the settings with AlgebraicCorrection, where there is
+   * 4. the algorithm of the settings with AlgebraicCorrection, where there is
    *    not much friction: then coarse levels are the trouble, for example
    *    because cells are short in two of three directions;
-   * 4. Newton's method, if it has not been tried yet: where there is much
+   * 5. Newton's method, if it has not been tried yet: where there is much
    *    friction, the law is the trouble;
-   * 5. continuation by the same method: first the problem with less friction,
+   * 6. continuation by the same method: first the problem with less friction,
    *    and its solution as initial guess for more, until all friction is there;
-   * 6. algebraic corrections, if they have not been tried yet;
-   * 7. Algorithm 2 with half of each change of the normal forces, and with
+   * 7. algebraic corrections, if they have not been tried yet;
+   * 8. Algorithm 2 with half of each change of the normal forces, and with
    *    mixing, see MixedFixedPoint. Each of its problems, with given normal
    *    forces, is convex, which makes it slow and reliable.
    *
@@ -43,8 +49,8 @@ namespace Friction
    * SolverSettings::total_cycles cycles at most, but for one in each of them,
    * and each attempt half of those that are left, continuation and the last one
    * all, so that a problem without hope, or a force that cannot be reached,
-   * comes to an end. Without Coulomb's friction the problem is convex, and 5
-   * and 7 are left out.
+   * comes to an end. Without Coulomb's friction the problem is convex, and 6
+   * and 8 are left out.
    *
    * What has solved one problem is tried first on the next one, in the next
    * call of solve() and, by SolverReport::next_method, on the next mesh; but
@@ -102,6 +108,7 @@ namespace Friction
     // Parts of attempts after the first, made when the first of them needs it.
     std::unique_ptr<Linearization<dim>>       phases;
     std::unique_ptr<TruncatedCorrection<dim>> truncated;
+    std::unique_ptr<AggregateCorrection<dim>> aggregates;
     std::unique_ptr<AlgebraicCorrection<dim>> algebraic;
     std::unique_ptr<NewtonSolver<dim>>        newton;
     LineSearch<dim>                           whole_steps;
@@ -112,6 +119,7 @@ namespace Friction
       VectorType     &u;
       ContactState   &state;
       const Progress &progress;
+      const double    accuracy; // as in solve()
     };
 
     // The law is to blame if something fails.
@@ -120,7 +128,11 @@ namespace Friction
     // Newton's method factorises the whole matrix: coarse levels are to blame.
     bool is_factorised() const;
 
-    CoulombSettings later_settings() const;
+    CoulombSettings later_settings(const double accuracy) const;
+
+    bool coarse_cells_may_be_to_blame() const;
+
+    SolverReport aggregate_corrections(const Search &search);
 
     MonotoneMultigrid<dim> without_levels();
 

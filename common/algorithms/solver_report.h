@@ -15,7 +15,8 @@ namespace Friction
   {
     algorithm, ///< that of the settings
     newton,    ///< NewtonSolver
-    algebraic  ///< that of the settings with AlgebraicCorrection
+    algebraic, ///< that of the settings with AlgebraicCorrection
+    aggregates ///< that of the settings with AggregateCorrection
   };
 
 

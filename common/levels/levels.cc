@@ -37,7 +37,8 @@ namespace Friction
                       const DoFHandler<dim>      &dof_handler,
                       const DiscreteProblem<dim> &problem,
                       const CoarsestMethod        coarsest_method)
-    : problem(problem)
+    : leaf_and_levels(dof_handler)
+    , problem(problem)
     , level_hierarchy(
         dof_handler, problem.constraints, problem.stiffness.blocks())
     , level_transfer(dof_handler, level_hierarchy, problem.constraints)

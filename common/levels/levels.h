@@ -46,6 +46,12 @@ namespace Friction
            DiscreteProblem<dim> &&,
            const CoarsestMethod = {}) = delete;
 
+    const DoFHandler<dim> &
+    dof_handler() const
+    {
+      return leaf_and_levels;
+    }
+
     const LevelHierarchy<dim> &
     hierarchy() const
     {
@@ -164,6 +170,7 @@ namespace Friction
            const DiscreteProblem<dim> &problem,
            const CoarsestMethod        coarsest_method);
 
+    const DoFHandler<dim>        &leaf_and_levels;
     const DiscreteProblem<dim>   &problem;
     const LevelHierarchy<dim>     level_hierarchy;
     const LevelTransfer<dim>      level_transfer;

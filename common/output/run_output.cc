@@ -5,6 +5,7 @@
 #include <common/output/warnings.h>
 #include <common/parallel/collective_error.h>
 #include <common/parallel/run_clock.h>
+#include <common/parameters/scene_file.h>
 #include <common/printable.h>
 
 #include <boost/archive/binary_iarchive.hpp>

@@ -382,9 +382,12 @@ namespace Friction
       {"Solver",
        "Coarse correction",
        "truncated",
-       choice("truncated|monotone|algebraic"),
+       choice("truncated|monotone|aggregates|algebraic"),
        "'truncated': unconstrained, with a line search. 'monotone': within "
-       "coarse obstacles. 'algebraic': not by coarse levels, but by solving "
+       "coarse obstacles. 'aggregates': as 'truncated', and once more on "
+       "levels "
+       "that are made of the matrix; good where materials jump within coarse "
+       "cells. 'algebraic': not by coarse levels, but by solving "
        "the linearised problem on the leaf mesh, with Trilinos; dear, and "
        "good where coarse levels are of no help, as with very long cells."},
       {"Solver", "Cycle", "V", choice("V|W"), "Kind of the multigrid cycle."},
@@ -489,7 +492,8 @@ namespace Friction
        "true",
        flag,
        "Whether to give up an iteration that is getting nowhere, and to try "
-       "others: shorter steps, algebraic corrections, Algorithm 2 with mixed "
+       "others: shorter steps, levels made of the matrix, algebraic "
+       "corrections, Algorithm 2 with mixed "
        "normal forces, or with small steps of them, less friction first."},
 
       {"Output",
@@ -584,5 +588,13 @@ namespace Friction
             return {base, static_cast<unsigned int>(std::stoi(digits))};
         }
     return {section, 1};
+  }
+
+
+
+  std::string
+  section_name(const std::string &base, const unsigned int number)
+  {
+    return number == 1 ? base : base + ' ' + std::to_string(number);
   }
 } // namespace Friction

@@ -42,6 +42,9 @@ namespace Friction
 
   /** Any other section is its own base. */
   NumberedSection numbered_section(const std::string &section);
+
+  /** The other way round: 'Contact' for 1, 'Contact 2' for 2. */
+  std::string section_name(const std::string &base, const unsigned int number);
 } // namespace Friction
 
 #endif

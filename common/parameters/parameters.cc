@@ -1,19 +1,16 @@
 #include <common/parameters/parameter_entries.h>
 #include <common/parameters/parameters.h>
 #include <common/parameters/parse_function.h>
+#include <common/parameters/scene_file.h>
 #include <common/printable.h>
 
 #include <deal.II/base/numbers.h>
-#include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/patterns.h>
 #include <deal.II/base/utilities.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
 #include <memory>
 #include <set>
 #include <sstream>
@@ -24,450 +21,6 @@ namespace Friction
 
   namespace
   {
-    void
-    declare_parameters(ParameterHandler &prm)
-    {
-      for (const ParameterEntry &entry : parameter_entries())
-        {
-          prm.enter_subsection(entry.section);
-          prm.declare_entry(entry.name,
-                            entry.default_value,
-                            *entry.pattern,
-                            entry.documentation);
-          prm.leave_subsection();
-        }
-    }
-
-
-
-    // 'Contact', or 'Contact 2'.
-    std::string
-    section_name(const std::string &base, const unsigned int number)
-    {
-      return number == 1 ? base : base + ' ' + std::to_string(number);
-    }
-
-
-
-    // Sections 'Contact 2' and 'Obstacle 2', as far as a scene has any.
-    void
-    declare_further_contact(ParameterHandler &prm, const unsigned int number)
-    {
-      for (const ParameterEntry &entry : parameter_entries())
-        if (entry.section == "Contact" || entry.section == "Obstacle")
-          {
-            prm.enter_subsection(section_name(entry.section, number));
-            prm.declare_entry(entry.name,
-                              entry.default_value,
-                              *entry.pattern,
-                              entry.documentation);
-            prm.leave_subsection();
-          }
-    }
-
-
-
-    // The entry that a path means, or null. 'Contact 2/Boundary id' is that of
-    // 'Contact/Boundary id'.
-    const ParameterEntry *
-    find_entry(const std::string &path)
-    {
-      const std::string section = path.substr(0, path.find('/'));
-      const std::string meant =
-        numbered_section(section).base + path.substr(section.size());
-      const auto entry = std::find_if(
-        parameter_entries().begin(),
-        parameter_entries().end(),
-        [&](const ParameterEntry &e) { return e.path() == meant; });
-      return entry == parameter_entries().end() ? nullptr : &*entry;
-    }
-
-
-
-    // What a pattern accepts, for the end of a sentence.
-    std::string
-    wanted(const Patterns::PatternBase &pattern)
-    {
-      std::string text = pattern.description(Patterns::PatternBase::Text);
-      if (text.find("1e-300 <= v <= MAX_DOUBLE") != text.npos)
-        return "a positive number";
-      // The descriptions begin sentences and name limits that no value meets.
-      text[0]            = std::tolower(text[0]);
-      const auto replace = [&](const std::string &from, const std::string &to) {
-        const auto position = text.find(from);
-        if (position != text.npos)
-          text.replace(position, from.size(), to);
-      };
-      replace("floating point number", "number");
-      replace(" v such that -MAX_DOUBLE <= v <= MAX_DOUBLE", "");
-      replace(" <= 2147483647", "");
-      replace("1e-300 <= v", "0 < v");
-      return text;
-    }
-
-
-
-    std::string
-    lower_case(std::string s)
-    {
-      std::transform(s.begin(), s.end(), s.begin(), [](const unsigned char c) {
-        return std::tolower(c);
-      });
-      return s;
-    }
-
-
-
-    // Number of insertions, deletions and replacements that make one string
-    // the other, not looking at upper and lower case.
-    unsigned int
-    edit_distance(const std::string &first, const std::string &second)
-    {
-      const std::string         a = lower_case(first), b = lower_case(second);
-      std::vector<unsigned int> row(b.size() + 1);
-      for (unsigned int j = 0; j <= b.size(); ++j)
-        row[j] = j;
-      for (unsigned int i = 1; i <= a.size(); ++i)
-        {
-          unsigned int diagonal = row[0];
-          row[0]                = i;
-          for (unsigned int j = 1; j <= b.size(); ++j)
-            {
-              const unsigned int replace =
-                diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-              diagonal = row[j];
-              row[j]   = std::min({row[j] + 1, row[j - 1] + 1, replace});
-            }
-        }
-      return row[b.size()];
-    }
-
-
-
-    std::string
-    nearest(const std::string &given, const std::vector<std::string> &known)
-    {
-      // Much longer than what there is, which would take long to find out.
-      const std::string name = given.substr(0, 200);
-      return *std::min_element(known.begin(),
-                               known.end(),
-                               [&](const std::string &a, const std::string &b) {
-                                 return edit_distance(name, a) <
-                                   edit_distance(name, b);
-                               });
-    }
-
-
-
-    // How often a word is among those of an expression.
-    unsigned int
-    n_uses(const std::string &expression, const std::string &word)
-    {
-      unsigned int n       = 0;
-      const auto   is_name = [](const unsigned char c) {
-        return std::isalnum(c) || c == '_';
-      };
-      for (std::size_t i = expression.find(word); i != expression.npos;
-           i             = expression.find(word, i + 1))
-        if ((i == 0 || !is_name(expression[i - 1])) &&
-            (i + word.size() == expression.size() ||
-             !is_name(expression[i + word.size()])))
-          ++n;
-      return n;
-    }
-
-
-
-    // The values of all entries, and where each was set, so that an error found
-    // later can still point to the place.
-    class Values
-    {
-    public:
-      Values()
-      {
-        declare_parameters(prm);
-      }
-
-      // What is set from now on comes from another source, a file or an
-      // override, and has the last word. Within one source an entry is set
-      // once.
-      void
-      begin_source()
-      {
-        set_by_source.clear();
-      }
-
-      void
-      set(const std::string &path,
-          const std::string &value,
-          const std::string &where)
-      {
-        const ParameterEntry *const entry = find_entry(path);
-        if (entry == nullptr)
-          {
-            std::vector<std::string> known;
-            for (const ParameterEntry &e : parameter_entries())
-              known.push_back(e.path());
-            throw InputError(where + ": there is no entry '" + excerpt(path) +
-                             "'; did you mean '" + nearest(path, known) + "'?");
-          }
-        if (!set_by_source.insert(path).second)
-          throw InputError(where + ": '" + path +
-                           "' has been set already, by " + origin[path] +
-                           "; remove one of them.");
-        if (!entry->pattern->match(value))
-          throw InputError(where + ": '" + excerpt(value) +
-                           "' is no value for '" + path + "'; give " +
-                           wanted(*entry->pattern) + ".");
-        const std::string  section = path.substr(0, path.find('/'));
-        const unsigned int number  = numbered_section(section).number;
-        if (number > 1 && further.insert(number).second)
-          declare_further_contact(prm, number);
-        prm.enter_subsection(section);
-        prm.set(entry->name, value);
-        prm.leave_subsection();
-        origin[path] = where;
-        if (may_use_names(path))
-          all_texts.push_back(value);
-      }
-
-      // The numbers of sections 'Contact 2', ... or 'Obstacle 2', ... in which
-      // something has been set.
-      const std::set<unsigned int> &
-      further_contacts() const
-      {
-        return further;
-      }
-
-      std::string
-      get(const std::string &path)
-      {
-        const auto slash = path.find('/');
-        prm.enter_subsection(path.substr(0, slash));
-        const std::string value = prm.get(path.substr(slash + 1));
-        prm.leave_subsection();
-        return value;
-      }
-
-      double
-      number(const std::string &path)
-      {
-        // Not string_to_double(), which throws where a number is too small.
-        const double value = std::strtod(get(path).c_str(), nullptr);
-        if (!(std::abs(value) <= largest_number))
-          throw InputError(subject(path) + " is " + excerpt(get(path)) +
-                           ", which is beyond 1e30; choose other units.");
-        return value;
-      }
-
-      double
-      positive_number(const std::string &path)
-      {
-        const double value = number(path);
-        if (!(value >= 1. / largest_number))
-          throw InputError(
-            subject(path) + " is " + excerpt(get(path)) + ", but it must " +
-            (value > 0. ? "not be below 1e-30; choose other units."
-                        : "be positive."));
-        return value;
-      }
-
-      unsigned int
-      integer(const std::string &path)
-      {
-        return Utilities::string_to_int(get(path));
-      }
-
-      unsigned int
-      steps(const std::string &path, const unsigned int automatic)
-      {
-        return get(path) == "automatic" ? automatic : integer(path);
-      }
-
-      bool
-      flag(const std::string &path)
-      {
-        const std::string value = get(path);
-        return value == "true" || value == "yes";
-      }
-
-      // Whether it has been set, to something else than its default.
-      bool
-      is_changed(const std::string &path)
-      {
-        return origin.count(path) > 0 &&
-          get(path) != find_entry(path)->default_value;
-      }
-
-      // How often values that have been set use a word, as expressions do.
-      unsigned int
-      n_uses(const std::string &word)
-      {
-        unsigned int n = 0;
-        for (const auto &[path, where] : origin)
-          if (may_use_names(path))
-            n += Friction::n_uses(get(path), word);
-        return n;
-      }
-
-      // The same with values in whose place an override has put others.
-      unsigned int
-      n_uses_ever(const std::string &word) const
-      {
-        unsigned int n = 0;
-        for (const std::string &text : all_texts)
-          n += Friction::n_uses(text, word);
-        return n;
-      }
-
-      // "where: 'Section/Entry'", the beginning of a sentence.
-      std::string
-      subject(const std::string &path) const
-      {
-        const auto where = origin.find(path);
-        return (where == origin.end() ? std::string("default value")
-                                      : where->second) +
-          ": '" + path + "'";
-      }
-
-      std::string
-      text()
-      {
-        std::ostringstream out;
-        prm.print_parameters(out,
-                             ParameterHandler::ShortPRM |
-                               ParameterHandler::KeepDeclarationOrder);
-        return out.str();
-      }
-
-    private:
-      ParameterHandler                   prm;
-      std::map<std::string, std::string> origin;
-      std::set<std::string>              set_by_source;
-      std::set<unsigned int>             further;
-      std::vector<std::string>           all_texts;
-
-      // Names of files are no expressions.
-      static bool
-      may_use_names(const std::string &path)
-      {
-        return path != "Scene/Mesh file" && path.compare(0, 7, "Output/") != 0;
-      }
-    };
-
-
-
-    // ParameterHandler could read the file itself, but its messages neither
-    // name the nearest entry nor fit one line. The format is simple enough.
-    void
-    read_file(const std::string &file_name, Values &values)
-    {
-      std::ifstream file(file_name);
-      std::string   line;
-      if (!file || file.peek() == std::ifstream::traits_type::eof())
-        throw InputError((file.is_open()
-                            ? "there is nothing in the scene file '"
-                            : "cannot read the scene file '") +
-                         excerpt(file_name, 300) +
-                         "'; give the path of an existing, readable scene.");
-
-      std::vector<std::string> sections;
-      for (const ParameterEntry &entry : parameter_entries())
-        if (sections.empty() || sections.back() != entry.section)
-          sections.push_back(entry.section);
-
-      std::string  section;
-      unsigned int n_lines = 0, section_line = 0;
-      const auto   is_word = [](const std::string &text, const std::string &w) {
-        return text.compare(0, w.size(), w) == 0 &&
-          (text.size() == w.size() ||
-           std::isspace(static_cast<unsigned char>(text[w.size()])));
-      };
-      while (std::getline(file, line))
-        {
-          ++n_lines;
-          const std::string where =
-            file_name + ":" + Utilities::int_to_string(n_lines);
-
-          // A backslash at the end continues the line; '#' starts a comment.
-          const auto clean = [](const std::string &raw) {
-            return Utilities::trim(raw.substr(0, raw.find('#')));
-          };
-          line = clean(line);
-          std::string more;
-          while (!line.empty() && line.back() == '\\')
-            {
-              line.pop_back();
-              if (!std::getline(file, more))
-                break;
-              ++n_lines;
-              line = Utilities::trim(line) + " " + clean(more);
-            }
-          if (line.empty())
-            continue;
-
-          if (is_word(line, "subsection"))
-            {
-              const std::string name = Utilities::trim(line.substr(10));
-              if (!section.empty())
-                throw InputError(where + ": section '" + excerpt(name) +
-                                 "' begins inside section '" + section +
-                                 "'; close that one with 'end' first.");
-              if (std::find(sections.begin(),
-                            sections.end(),
-                            numbered_section(name).base) == sections.end())
-                throw InputError(where + ": there is no section '" +
-                                 excerpt(name) + "'; did you mean '" +
-                                 nearest(name, sections) + "'?");
-              section      = name;
-              section_line = n_lines;
-            }
-          else if (line == "end")
-            {
-              if (section.empty())
-                throw InputError(where +
-                                 ": 'end' closes no section; "
-                                 "remove it.");
-              section.clear();
-            }
-          else if (is_word(line, "set") && line.find('=') != line.npos)
-            {
-              const auto        equal = line.find('=');
-              const std::string name =
-                Utilities::trim(line.substr(3, equal - 3));
-              const std::string value = Utilities::trim(line.substr(equal + 1));
-              values.set(
-                section.empty() ? name : section + "/" + name, value, where);
-            }
-          else
-            throw InputError(where + ": '" + excerpt(line) +
-                             "' is neither 'subsection <name>', 'set <entry> = "
-                             "<value>' nor 'end'; correct the line.");
-        }
-      if (!section.empty())
-        throw InputError(
-          file_name + ":" + Utilities::int_to_string(section_line) +
-          ": section '" + section + "' is not closed; add a line 'end'.");
-    }
-
-
-
-    void
-    read_override(const std::string &text, Values &values)
-    {
-      const auto equal = text.find('=');
-      const auto slash = text.find('/');
-      if (equal == text.npos || slash == text.npos || slash > equal)
-        throw InputError("override '" + excerpt(text) +
-                         "': this is not of the form Section/Entry=value; "
-                         "quote it if it contains blanks.");
-      values.set(Utilities::trim(text.substr(0, equal)),
-                 Utilities::trim(text.substr(equal + 1)),
-                 "override '" + excerpt(text) + "'");
-    }
-
-
-
     // Split at a character, but not inside parentheses, and trim the parts.
     // Nothing makes no part.
     std::vector<std::string>
@@ -500,7 +53,7 @@ namespace Friction
     std::vector<std::pair<std::string, std::string>>
     read_names(const std::string                   &path,
                const std::map<std::string, double> &taken,
-               Values                              &values)
+               SceneFile                           &values)
     {
       std::vector<std::pair<std::string, std::string>> names;
       for (const std::string &part : split(values.get(path), ';'))
@@ -543,7 +96,7 @@ namespace Friction
     std::vector<ConditionText>
     read_conditions(const std::string &path,
                     const std::string &form,
-                    Values            &values)
+                    SceneFile         &values)
     {
       std::vector<ConditionText> conditions;
       for (const std::string &part : split(values.get(path), ';'))
@@ -596,7 +149,7 @@ namespace Friction
     // Other materials in parts of the body.
     void
     read_regions(const std::string &usual_kind,
-                 Values            &values,
+                 SceneFile         &values,
                  Parameters        &parameters)
     {
       const std::string path    = "Material/Regions";
@@ -638,7 +191,8 @@ namespace Friction
 
     // Which increase, and may use the constants.
     std::vector<double>
-    read_times(Values &values, const std::map<std::string, double> &constants)
+    read_times(SceneFile                           &values,
+               const std::map<std::string, double> &constants)
     {
       const std::string         path  = "Load steps/Times";
       const std::vector<double> times = read_vector(
@@ -656,7 +210,7 @@ namespace Friction
 
     // 'length: mm, force: N', each at most once.
     Parameters::UnitNames
-    read_units(Values &values)
+    read_units(SceneFile &values)
     {
       const std::string     path = "Output/Units";
       Parameters::UnitNames names;
@@ -692,7 +246,7 @@ namespace Friction
     // right after them.
     void
     define_varying_coefficient(
-      Values                                           &values,
+      SceneFile                                        &values,
       const std::map<std::string, double>              &constants,
       std::vector<std::pair<std::string, std::string>> &definitions,
       Parameters                                       &parameters)
@@ -717,7 +271,7 @@ namespace Friction
 
     // A number, or the word that leaves it to the estimated error.
     void
-    read_inner_tolerance(Values &values, Parameters &parameters)
+    read_inner_tolerance(SceneFile &values, Parameters &parameters)
     {
       const std::string name   = "Solver/Inner tolerance";
       const std::string text   = values.get(name);
@@ -745,7 +299,7 @@ namespace Friction
 
     std::vector<std::vector<double>>
     read_vectors(const std::string &path,
-                 Values            &values,
+                 SceneFile         &values,
                  const Expressions &expressions)
     {
       std::vector<std::vector<double>> vectors;
@@ -759,7 +313,7 @@ namespace Friction
     // What is in the way, from a section of that name.
     void
     read_obstacle(const std::string    &section,
-                  Values               &values,
+                  SceneFile            &values,
                   const Expressions    &expressions,
                   Parameters::Obstacle &obstacle)
     {
@@ -839,7 +393,7 @@ namespace Friction
     // read before all else.
     void
     read_contact(const std::string   &section,
-                 Values              &values,
+                 SceneFile           &values,
                  Parameters::Contact &contact)
     {
       const auto path = [&](const std::string &name) {
@@ -865,7 +419,7 @@ namespace Friction
 
     Parameters::FurtherContact
     read_further_contact(const unsigned int number,
-                         Values            &values,
+                         SceneFile         &values,
                          const Expressions &expressions)
     {
       Parameters::FurtherContact result;
@@ -899,7 +453,7 @@ namespace Friction
     // Entries that have been set, and that nothing uses in this scene: most
     // likely another entry is not what it should be.
     std::vector<std::string>
-    unused_entries(Values &values)
+    unused_entries(SceneFile &values)
     {
       std::vector<std::string> warnings;
       const auto               is_one_of = [&](const std::string              &path,
@@ -972,7 +526,7 @@ namespace Friction
       only_with("Solver/Total cycles", "Solver/Safeguards", yes);
       only_with("Solver/Recombined steps",
                 "Solver/Coarse correction",
-                {"truncated", "algebraic"});
+                {"truncated", "aggregates", "algebraic"});
       only_with("Output/Format", "Output/Fields", yes);
       only_with("Output/Principal stresses", "Output/Fields", yes);
       // Where it is defined it is used once.
@@ -993,7 +547,7 @@ namespace Friction
 
     // Friction feels what the body does, and not what the obstacle does.
     void
-    warn_of_moving_obstacles(Values &values, Parameters &parameters)
+    warn_of_moving_obstacles(SceneFile &values, Parameters &parameters)
     {
       const auto warn = [&](const unsigned int          number,
                             const Parameters::Obstacle &obstacle,
@@ -1020,81 +574,11 @@ namespace Friction
 
 
 
-  Expressions::Expressions(
-    const std::map<std::string, double>                    &constants,
-    const std::vector<std::pair<std::string, std::string>> &definitions,
-    const std::string                                      &where,
-    const bool                                              has_time)
-    : time_is_known(has_time)
-    , named_numbers(constants)
-  {
-    // In two dimensions there is no z, which is found out by those who use the
-    // definition.
-    for (const auto &[name, expression] : definitions)
-      {
-        parse_function<3>(
-          {expression}, *this, where + " of '" + excerpt(name) + "'");
-        expanded_definitions[name] = expand(expression);
-      }
-  }
-
-
-
-  std::string
-  Expressions::expand(const std::string &expression) const
-  {
-    std::string expanded;
-    const auto  is_name = [](const unsigned char c) {
-      return std::isalnum(c) || c == '_' || c == '.';
-    };
-    for (std::size_t i = 0; i < expression.size();)
-      {
-        // A word starts with its first letter; 2e-3 is a number and no 'e'.
-        std::size_t end = i;
-        while (end < expression.size() && is_name(expression[end]))
-          ++end;
-        if (end == i)
-          {
-            expanded += expression[i++];
-            continue;
-          }
-        const std::string word       = expression.substr(i, end - i);
-        const auto        definition = expanded_definitions.find(word);
-        expanded += (definition == expanded_definitions.end()
-                       ? word
-                       : "(" + definition->second + ")");
-        i = end;
-      }
-    return expanded;
-  }
-
-
-
-  double
-  Expressions::evaluate(const std::string &expression,
-                        const std::string &where) const
-  {
-    // There is no coordinate to depend on: no scene file has this name.
-    const double value =
-      parse_function<1>(
-        {expression}, *this, where, "no_coordinate", /*with_time =*/false)
-        ->value(Point<1>());
-    if (!std::isfinite(value))
-      throw InputError(where + ": '" + excerpt(expression) +
-                       "' is not a finite number; correct it.");
-    if (std::abs(value) > largest_number)
-      throw InputError(where + ": '" + excerpt(expression) +
-                       "' is beyond 1e30; choose other units.");
-    return value;
-  }
-
-
-
   Parameters
   read_parameters(const std::string              &scene_file,
                   const std::vector<std::string> &overrides)
   {
-    Values values;
+    SceneFile values;
     read_file(scene_file, values);
     for (const std::string &override_text : overrides)
       {
@@ -1260,9 +744,10 @@ namespace Friction
                             : Algorithm::gauss_seidel_like);
       const std::string correction = values.get("Solver/Coarse correction");
       solver.coarse_correction =
-        (correction == "truncated"    ? CoarseCorrection::truncated
-           : correction == "monotone" ? CoarseCorrection::monotone
-                                      : CoarseCorrection::algebraic);
+        (correction == "truncated"      ? CoarseCorrection::truncated
+           : correction == "monotone"   ? CoarseCorrection::monotone
+           : correction == "aggregates" ? CoarseCorrection::aggregates
+                                        : CoarseCorrection::algebraic);
       solver.cycle = (values.get("Solver/Cycle") == "V" ? Cycle::V : Cycle::W);
       solver.truncation = (truncation == "phases" ? TruncationVariant::phases
                              : truncation == "contact"
@@ -1325,74 +810,5 @@ namespace Friction
     parameters.warnings = unused_entries(values);
     warn_of_moving_obstacles(values, parameters);
     return parameters;
-  }
-
-
-
-  std::string
-  first_difference(const std::string &text,
-                   const std::string &other,
-                   const bool         may_be_refined)
-  {
-    std::set<std::string> may_differ = {"Refinement/Estimate error"};
-    if (may_be_refined)
-      may_differ.insert({"Refinement/Levels", "Refinement/Maximum dofs"});
-
-    // What one of the two does not mention has its default there.
-    std::array<ParameterHandler, 2> handlers;
-    std::set<unsigned int>          further;
-    for (const std::string *const one : {&text, &other})
-      {
-        std::istringstream lines(*one);
-        for (std::string line; std::getline(lines, line);)
-          {
-            line = Utilities::trim(line);
-            if (line.compare(0, 11, "subsection ") == 0)
-              further.insert(
-                numbered_section(Utilities::trim(line.substr(11))).number);
-          }
-      }
-    further.erase(1);
-    for (ParameterHandler &handler : handlers)
-      {
-        declare_parameters(handler);
-        for (const unsigned int number : further)
-          declare_further_contact(handler, number);
-      }
-    handlers[0].parse_input_from_string(text);
-    handlers[1].parse_input_from_string(other);
-    const auto value = [&](const unsigned int i,
-                           const std::string &section,
-                           const std::string &name) {
-      handlers[i].enter_subsection(section);
-      const std::string value = handlers[i].get(name);
-      handlers[i].leave_subsection();
-      return value;
-    };
-
-    for (const ParameterEntry &entry : parameter_entries())
-      {
-        std::vector<std::string> sections = {entry.section};
-        if (entry.section == "Contact" || entry.section == "Obstacle")
-          for (const unsigned int number : further)
-            sections.push_back(section_name(entry.section, number));
-        for (const std::string &section : sections)
-          if (section != "Solver" && section != "Output" &&
-              may_differ.count(entry.path()) == 0 &&
-              value(0, section, entry.name) != value(1, section, entry.name))
-            return section + '/' + entry.name;
-      }
-    return "";
-  }
-
-
-
-  void
-  print_default_parameters(std::ostream &out)
-  {
-    ParameterHandler prm;
-    declare_parameters(prm);
-    prm.print_parameters(
-      out, ParameterHandler::PRM | ParameterHandler::KeepDeclarationOrder);
   }
 } // namespace Friction

@@ -1,6 +1,7 @@
 #ifndef friction_parameters_parameters_h
 #define friction_parameters_parameters_h
 
+#include <common/parameters/expressions.h>
 #include <common/parameters/material.h>
 #include <common/parameters/solver_settings.h>
 #include <common/parameters/wrong_number.h>
@@ -14,69 +15,6 @@
 
 namespace Friction
 {
-  /**
-   * Whatever the units, a number beyond this is a mistake, and a length, a
-   * modulus or a radius below its inverse as well: squares of energies could no
-   * longer be represented.
-   */
-  constexpr double largest_number = 1e30;
-
-  /**
-   * The names that the expressions of one scene may use besides the
-   * coordinates: constants with a number, and definitions, which are
-   * themselves expressions and are put in place of their names.
-   */
-  class Expressions
-  {
-  public:
-    Expressions() = default;
-
-    /**
-     * @param constants names and their numbers
-     * @param definitions names and the expressions they stand for, which may
-     *   use the constants and the definitions before them
-     * @param where the beginning of the sentence if one of them cannot be
-     *   understood, which is an InputError
-     * @param has_time whether definitions, and expressions with coordinates,
-     *   may use the time t
-     */
-    Expressions(
-      const std::map<std::string, double>                    &constants,
-      const std::vector<std::pair<std::string, std::string>> &definitions,
-      const std::string                                      &where    = "",
-      const bool                                              has_time = false);
-
-    /// The expression with every defined name replaced by what it stands for.
-    std::string expand(const std::string &expression) const;
-
-    /**
-     * The value of an expression that does not depend on the coordinates.
-     * Throws InputError when there is none; @p where says in that sentence
-     * which parameter is meant.
-     */
-    double evaluate(const std::string &expression,
-                    const std::string &where) const;
-
-    const std::map<std::string, double> &
-    constants() const
-    {
-      return named_numbers;
-    }
-
-    bool
-    has_time() const
-    {
-      return time_is_known;
-    }
-
-  private:
-    bool                               time_is_known = false;
-    std::map<std::string, double>      named_numbers;
-    std::map<std::string, std::string> expanded_definitions;
-  };
-
-
-
   enum class GeometryKind
   {
     half_disc,     ///< lower half disc, centre at the origin, flat top y = 0
@@ -288,28 +226,6 @@ namespace Friction
    */
   Parameters read_parameters(const std::string              &scene_file,
                              const std::vector<std::string> &overrides = {});
-
-  /**
-   * Compares the parameters of two runs, each given as in Parameters::text, one
-   * of which is to continue the other.
-   *
-   * @return the first entry that would make it another problem or another
-   *   sequence of meshes, as <tt>Section/Entry</tt>; empty if there is none.
-   * How to solve and what to write or print may differ, and so may how far to
-   * go (number of levels, limit on unknowns), if there is a choice.
-   *
-   * @param may_be_refined  whether there is; in later load steps the mesh is
-   *   what it is.
-   */
-  std::string first_difference(const std::string &text,
-                               const std::string &other,
-                               const bool         may_be_refined = true);
-
-  /**
-   * Print all entries with their defaults and documentation, in the format of
-   * a scene file.
-   */
-  void print_default_parameters(std::ostream &out);
 } // namespace Friction
 
 #endif

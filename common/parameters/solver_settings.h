@@ -27,9 +27,10 @@ namespace Friction
 
   enum class CoarseCorrection
   {
-    truncated, ///< unconstrained on truncated functions, then a line search
-    monotone,  ///< constrained by coarse obstacles, no line search needed
-    algebraic  ///< the truncated problem solved on the leaf mesh itself
+    truncated,  ///< unconstrained on truncated functions, then a line search
+    monotone,   ///< constrained by coarse obstacles, no line search needed
+    aggregates, ///< as truncated, and once more on levels made of the matrix
+    algebraic   ///< the truncated problem solved on the leaf mesh itself
   };
 
   enum class Cycle

@@ -1,5 +1,6 @@
 #include <common/parallel/collective_error.h>
 #include <common/parallel/run_clock.h>
+#include <common/parameters/scene_file.h>
 #include <common/printable.h>
 #include <common/program/check_scene.h>
 #include <common/program/command_line.h>

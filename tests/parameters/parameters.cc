@@ -1,6 +1,7 @@
 // Scene files, overrides, and what is said about everything wrong in them.
 
 #include <common/parameters/parameters.h>
+#include <common/parameters/scene_file.h>
 
 #include <fstream>
 #include <iostream>
