@@ -24,10 +24,8 @@ namespace Friction
     // less.
     constexpr unsigned int many_cycles = 25, many_for_the_next = 20;
 
-    // The same where materials jump, for levels made of the matrix: cycles
-    // until they are tried, and that they may take themselves.
-    constexpr unsigned int jump_patience = 10, aggregate_patience = 15,
-                           many_aggregate_cycles = 60;
+    // Where materials jump, there are levels made of the matrix to try.
+    constexpr unsigned int jump_patience = 10;
 
     // Up to this number of unknowns the whole matrix is factorised for Newton's
     // method, in two dimensions, if nothing else is left. A step takes as long
@@ -188,11 +186,8 @@ namespace Friction
     if (!aggregates)
       aggregates = std::make_unique<AggregateCorrection<dim>>(
         levels, problem, settings.cycle, settings.coarse_smoothing_steps);
-    CoulombSettings limits          = later_settings(search.accuracy);
-    limits.limits.patience          = aggregate_patience;
-    limits.limits.worthwhile_cycles = many_aggregate_cycles;
-    MonotoneMultigrid<dim> best     = iteration.with(*aggregates);
-    return CoulombSolver<dim>(best, limits)
+    MonotoneMultigrid<dim> best = iteration.with(*aggregates);
+    return CoulombSolver<dim>(best, later_settings(search.accuracy))
       .solve(search.u, search.state, search.progress);
   }
 
@@ -436,10 +431,15 @@ namespace Friction
         (much_friction() ||
          (is_factorised() && u.size() <= largest_factorised_first)))
       try_newton();
-    else if (begin_with == Method::algebraic)
-      try_algebraic_corrections();
     else if (begin_with == Method::aggregates)
       try_aggregates();
+    else if (begin_with == Method::algebraic)
+      {
+        // Much dearer, so that others may try what they can do on this mesh.
+        if (coarse_cells_may_be_to_blame())
+          try_aggregates();
+        try_algebraic_corrections();
+      }
 
     // What makes coarse levels of little use.
     const bool jumps =
