@@ -19,10 +19,11 @@ RUNS = (("no sign", "block", 3, ()),
          ("Contact/Friction coefficient=10",)))
 
 # By how the sentence of a run begins that says what has been tried.
-STYLES = (("Algorithm 3 with algebraic", "algebraic\ncorrections", GREEN, "s"),
+STYLES = (("Algorithm 3 with levels made", "levels made\nof the matrix", GREEN, "s"),
+          ("Algorithm 3 with algebraic", "algebraic\ncorrections", ORANGE, "s"),
           ("Algorithm 3", "Algorithm 3", BLUE, "o"),
           ("Newton", "Newton", RED, "D"),
-          ("continuation", "continuation", ORANGE, "^"),
+          ("continuation", "continuation", "k", "^"),
           ("Algorithm 2", "Algorithm 2", PINK, "v"))
 
 
