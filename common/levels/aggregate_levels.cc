@@ -700,7 +700,9 @@ namespace Friction
   {
     const auto        &matrix = levels.back().matrix;
     const unsigned int size   = n_motions * matrix.n_rows();
-    if (matrix.n_rows() > 4 * coarsest_size)
+    // None, if a process has nothing, or too much, since no couplings are
+    // strong.
+    if (size == 0 || matrix.n_rows() > 2 * coarsest_size)
       {
         coarsest_inverse.clear();
         return;

