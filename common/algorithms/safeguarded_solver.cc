@@ -25,7 +25,8 @@ namespace Friction
     constexpr unsigned int many_cycles = 25, many_for_the_next = 20;
 
     // Where materials jump, there are levels made of the matrix to try.
-    constexpr unsigned int jump_patience = 10;
+    // If these take that many cycles, the next mesh does not begin with them.
+    constexpr unsigned int jump_patience = 10, too_many_for_the_next = 100;
 
     // Up to this number of unknowns the whole matrix is factorised for Newton's
     // method, in two dimensions, if nothing else is left. A step takes as long
@@ -150,8 +151,8 @@ namespace Friction
 
 
 
-  // What all attempts after the first have in common. They are to find a
-  // solution, to the usual tolerance.
+  // What all attempts after the first have in common. They end by increments,
+  // and not by an estimate of the error.
   template <int dim>
   CoulombSettings
   SafeguardedSolver<dim>::later_settings(const double accuracy) const
@@ -166,14 +167,16 @@ namespace Friction
 
 
 
-  // Lines in two dimensions are short of nothing but lines.
+  // In two dimensions relaxation of lines is all that stretched cells need.
   template <int dim>
   bool
   SafeguardedSolver<dim>::coarse_cells_may_be_to_blame() const
   {
+    constexpr double mostly = .5;
     return has_defaults(settings) && !much_friction() &&
       levels.hierarchy().n_levels() > 1 &&
-      ((dim == 3 && levels.share_in_lines(levels.n_correction_levels()) > 0) ||
+      ((dim == 3 &&
+        levels.share_in_lines(levels.n_correction_levels()) >= mostly) ||
        materials_jump(problem.stiffness.blocks(), problem.communicator()));
   }
 
@@ -410,8 +413,11 @@ namespace Friction
       attempt(
         name + " with levels made of the matrix",
         [&](const Search &search) { return aggregate_corrections(search); });
+      aggregates_have_failed = !report.converged;
       if (report.converged)
-        next_method = Method::aggregates;
+        next_method = report.cycles.size() > too_many_for_the_next
+          ? Method::algorithm
+          : Method::aggregates;
     };
     bool       is_newton  = false;
     const auto try_newton = [&]() {
@@ -425,54 +431,57 @@ namespace Friction
         next_method = Method::newton;
     };
 
+    const auto try_algorithm = [&](const unsigned int its_patience,
+                                   const unsigned int worthwhile) {
+      first.limits.patience          = its_patience;
+      first.limits.worthwhile_cycles = worthwhile;
+      first.limits.budget            = budget;
+      if (!all.attempts.empty())
+        start_anew();
+      attempt(name, [&](const Search &search) {
+        return CoulombSolver<dim>(iteration, first)
+          .solve(search.u, search.state, search.progress);
+      });
+      next_method = Method::algorithm;
+    };
+    constexpr unsigned int any_number =
+      std::numeric_limits<unsigned int>::max();
+
     // What has solved the mesh before is likely to solve this one.
     const Method begin_with = next_method;
     if (begin_with == Method::newton &&
         (much_friction() ||
          (is_factorised() && u.size() <= largest_factorised_first)))
       try_newton();
-    else if (begin_with == Method::aggregates)
+    else if (begin_with == Method::aggregates && has_defaults(settings) &&
+             !much_friction())
       try_aggregates();
     else if (begin_with == Method::algebraic)
       {
-        // Much dearer, so that others may try what they can do on this mesh.
-        if (coarse_cells_may_be_to_blame())
+        // Much dearer, so that others may try once what they can do on this
+        // mesh.
+        if (!aggregates_have_failed && coarse_cells_may_be_to_blame())
           try_aggregates();
         try_algebraic_corrections();
       }
 
-    // What makes coarse levels of little use.
-    const bool jumps =
+    // Whether there is something else to try soon.
+    const bool may_aggregate =
       !report.converged && !is_aggregate && coarse_cells_may_be_to_blame();
     if (!report.converged)
       {
         budget->begin_attempt();
-        first.limits.patience = patience;
-        first.limits.budget   = budget;
         if (much_friction())
-          {
-            first.limits.patience = short_patience;
-            if (has_defaults(settings) && !is_newton)
-              first.limits.worthwhile_cycles = many_cycles;
-          }
-        else if (jumps)
-          {
-            first.limits.patience          = jump_patience;
-            first.limits.worthwhile_cycles = many_cycles;
-          }
-        if (!all.attempts.empty())
-          start_anew();
-        attempt(name, [&](const Search &search) {
-          return CoulombSolver<dim>(iteration, first)
-            .solve(search.u, search.state, search.progress);
-        });
-        next_method = Method::algorithm;
+          try_algorithm(short_patience,
+                        has_defaults(settings) && !is_newton ? many_cycles
+                                                             : any_number);
+        else if (may_aggregate)
+          try_algorithm(jump_patience, many_cycles);
+        else
+          try_algorithm(patience, any_number);
         if (report.converged && !is_newton && has_defaults(settings) &&
             much_friction() && report.cycles.size() > many_for_the_next)
           next_method = Method::newton;
-        if (report.converged && jumps &&
-            report.cycles.size() > many_for_the_next)
-          next_method = Method::aggregates;
         if (report.converged && all.attempts.size() == 1)
           {
             report.next_method = next_method;
@@ -484,10 +493,13 @@ namespace Friction
     // but not if only the outer iteration of Algorithm 2 has failed.
     const bool outer_failure = coulomb && report.inner_converged &&
       settings.algorithm == Algorithm::fixed_point;
-    if (jumps)
+    if (may_aggregate)
       try_aggregates();
     if (is_factorised() && !outer_failure)
       try_newton();
+    // It has not had much time.
+    if (!report.converged && may_aggregate && budget->begin_attempt())
+      try_algorithm(patience, any_number);
     if (!outer_failure && !much_friction())
       try_algebraic_corrections();
     try_newton();

@@ -20,12 +20,12 @@ namespace Friction
    *    friction, or where materials jump, it has to show soon that it gets
    *    somewhere;
    * 2. the algorithm of the settings with AggregateCorrection, where there is
-   *    not much friction and materials jump, or cells are stretched in three
-   *    dimensions: coarse functions do not follow borders of materials within
-   *    coarse cells;
+   *    not much friction and materials jump, or most nodes of a body in three
+   *    dimensions are in lines of strong couplings: coarse functions do not
+   *    follow borders of materials within coarse cells;
    * 3. where there is not much friction, but the whole matrix can be factorised
    *    soon, Newton's method with these factors from the initial guess, see
-   *    NewtonSolver;
+   *    NewtonSolver; and after it, if 2. has left it little time, 1. once more;
    * 4. the algorithm of the settings with AlgebraicCorrection, where there is
    *    not much friction: then coarse levels are the trouble, for example
    *    because cells are short in two of three directions;
@@ -53,9 +53,10 @@ namespace Friction
    * and 8 are left out.
    *
    * What has solved one problem is tried first on the next one, in the next
-   * call of solve() and, by SolverReport::next_method, on the next mesh; but
-   * Newton's method only with much friction, or up to 3000 unknowns in two
-   * dimensions, where factors of the whole matrix cost next to nothing.
+   * call of solve() and, by SolverReport::next_method, on the next mesh, 2.
+   * before 4. if that has not failed on the same mesh; but Newton's method only
+   * with much friction, or up to 3000 unknowns in two dimensions, where factors
+   * of the whole matrix cost next to nothing.
    */
   template <int dim>
   class SafeguardedSolver
@@ -101,6 +102,9 @@ namespace Friction
 
     // That of the next call of solve(), to judge by those before.
     Method next_method;
+
+    // On this mesh, which is that of all calls of solve().
+    bool aggregates_have_failed = false;
 
     // Of all calls of solve().
     const std::shared_ptr<CycleBudget> budget;

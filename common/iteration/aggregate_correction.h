@@ -12,6 +12,10 @@ namespace Friction
    * it. Functions on coarse cells serve what is smooth across the whole body,
    * and all processes; functions on groups of strongly coupled nodes serve
    * stiff parts, which move as a whole, and soft ones between them.
+   *
+   * Each cycle by itself is symmetric, one after the other is not; and several
+   * processes solve each for its own nodes at once, which may go too far. What
+   * the sum may do to the energy the line search finds out.
    */
   template <int dim>
   class AggregateCorrection : public Correction<dim>

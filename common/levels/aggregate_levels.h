@@ -61,9 +61,10 @@ namespace Friction
                  const NodalConstraints<dim> &constraints);
 
   /**
-   * Whether a stiff part and a soft one meet somewhere: two neighbours have
-   * diagonal blocks that differ by more than what cells of different sizes, and
-   * corners of the body, can cause. Collective.
+   * Whether a stiff part and a soft one meet somewhere within a process: two
+   * neighbours have diagonal blocks that differ by a factor of more than 30,
+   * which cells of different sizes and corners of the body do not cause, but
+   * very long cells may. Collective.
    */
   template <int dim>
   bool materials_jump(const NodeBlockMatrix<dim> &leaf_matrix,
@@ -86,6 +87,9 @@ namespace Friction
    * $B_1=P_1^T\,T(A+\omega'')T\,P_1$, and $B_{k+1}=P_{k+1}^TB_kP_{k+1}$
    * (levels count from the leaf mesh here). When the truncation changes at
    * some nodes, only the rows that depend on them are computed anew.
+   *
+   * The coarsest level is solved if it has few nodes; where no couplings are
+   * strong any more it may have many, and is relaxed like all others.
    *
    * Groups do not reach across processes, and each process solves for its own
    * nodes as if all others were held.

@@ -35,7 +35,8 @@ namespace Friction
   public:
     /**
      * Collective.
-     * @param dof_handler  with leaf and level degrees of freedom.
+     * @param dof_handler  with leaf and level degrees of freedom; kept by
+     *                     reference.
      * @param problem      on its leaf mesh; kept by reference, as is what it
      *                     refers to.
      */
