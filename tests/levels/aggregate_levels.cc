@@ -124,8 +124,8 @@ namespace
   test_free_body(Random &random)
   {
     RandomProblem<dim> body(block_parameters<dim>(FrictionLaw::coulomb, 7.),
-                            dim == 2 ? 4 : 3,
-                            .3,
+                            dim == 2 ? 6 : 4,
+                            .6,
                             random);
     const DiscreteProblem<dim> problem     = body.discretization.problem();
     const DoFHandler<dim>     &dof_handler = body.discretization.dof_handler();
