@@ -170,14 +170,18 @@ namespace Friction
   // In two dimensions relaxation of lines is all that stretched cells need.
   template <int dim>
   bool
-  SafeguardedSolver<dim>::coarse_cells_may_be_to_blame() const
+  SafeguardedSolver<dim>::coarse_cells_may_be_to_blame()
   {
+    if (!has_defaults(settings) || much_friction() ||
+        levels.hierarchy().n_levels() == 1)
+      return false;
     constexpr double mostly = .5;
-    return has_defaults(settings) && !much_friction() &&
-      levels.hierarchy().n_levels() > 1 &&
-      ((dim == 3 &&
-        levels.share_in_lines(levels.n_correction_levels()) >= mostly) ||
-       materials_jump(problem.stiffness.blocks(), problem.communicator()));
+    if (!hard_for_coarse_cells)
+      hard_for_coarse_cells =
+        (dim == 3 &&
+         levels.share_in_lines(levels.n_correction_levels()) >= mostly) ||
+        materials_jump(problem.stiffness.blocks(), problem.communicator());
+    return *hard_for_coarse_cells;
   }
 
 

@@ -8,6 +8,7 @@
 #include <common/iteration/truncated_correction.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace Friction
@@ -103,8 +104,11 @@ namespace Friction
     // That of the next call of solve(), to judge by those before.
     Method next_method;
 
-    // On this mesh, which is that of all calls of solve().
-    bool aggregates_have_failed = false;
+    // On this mesh, which is that of all calls of solve(): whether materials
+    // jump or cells are stretched, once that has been asked, and whether levels
+    // made of the matrix have failed.
+    std::optional<bool> hard_for_coarse_cells;
+    bool                aggregates_have_failed = false;
 
     // Of all calls of solve().
     const std::shared_ptr<CycleBudget> budget;
@@ -134,7 +138,7 @@ namespace Friction
 
     CoulombSettings later_settings(const double accuracy) const;
 
-    bool coarse_cells_may_be_to_blame() const;
+    bool coarse_cells_may_be_to_blame();
 
     SolverReport aggregate_corrections(const Search &search);
 

@@ -4,7 +4,6 @@
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 
 #include <algorithm>
-#include <array>
 
 namespace Friction
 {
@@ -57,12 +56,7 @@ namespace Friction
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
     const Truncation<dim> &truncation = linearization.truncation();
-    bool                   changed    = !is_filled;
-    const std::array<const Truncation<dim> *, 2> both = {
-      {&truncation, &current}};
-    for (const Truncation<dim> *one : both)
-      for (const unsigned int node : one->changed_nodes())
-        changed = changed || !current.agrees(truncation, node);
+    const bool changed = !is_filled || !current.differences(truncation).empty();
     if (!true_on_any_process(changed, problem.communicator()))
       return;
     current = truncation;
@@ -95,13 +89,12 @@ namespace Friction
           {
             const unsigned int j = leaf_matrix.column(e);
             NodeBlock<dim>     block =
-              current.truncated_block(i, leaf_matrix.block(e), j);
+              current.linearized_block(i, leaf_matrix.block(e), j);
             if (i == j)
               for (unsigned int c = 0; c < dim; ++c)
                 for (unsigned int r = 0; r < dim; ++r)
-                  block[c * dim + r] += current.curvature(i)[c * dim + r] +
-                    scale *
-                      ((r == c ? 1. : 0.) - current.projector(i)[c * dim + r]);
+                  block[c * dim + r] += scale *
+                    ((r == c ? 1. : 0.) - current.projector(i)[c * dim + r]);
             for (unsigned int c = 0; c < dim; ++c)
               for (unsigned int r = 0; r < dim; ++r)
                 matrix.set(dof(i, r), dof(j, c), block[c * dim + r]);

@@ -93,12 +93,8 @@ namespace Friction
                 visitor(j, matrix.block(e));
                 continue;
               }
-            NodeBlock<dim> block =
-              truncation.truncated_block(i, matrix.block(e), j);
-            if (i == j)
-              for (int c = 0; c < dim * dim; ++c)
-                block[c] += truncation.curvature(i)[c];
-            visitor(j, block.data());
+            visitor(j,
+                    truncation.linearized_block(i, matrix.block(e), j).data());
           }
       }
     };
@@ -648,18 +644,10 @@ namespace Friction
   std::size_t
   AggregateLevels<dim>::update(const Truncation<dim> &wanted)
   {
-    std::vector<unsigned int> changed;
-    std::vector<char>         is_changed(leaf_matrix.n_rows());
-    const std::array<const Truncation<dim> *, 2> both = {
-      {&wanted, &truncation}};
-    for (const Truncation<dim> *one : both)
-      for (const unsigned int node : one->changed_nodes())
-        if (node < leaf_matrix.n_rows() && !is_changed[node] &&
-            !truncation.agrees(wanted, node))
-          {
-            is_changed[node] = true;
-            changed.push_back(node);
-          }
+    std::vector<unsigned int> changed = truncation.differences(wanted);
+    changed.erase(
+      std::lower_bound(changed.begin(), changed.end(), leaf_matrix.n_rows()),
+      changed.end());
     if (changed.empty())
       return 0;
     truncation         = wanted;
@@ -731,19 +719,16 @@ namespace Friction
     for (unsigned int sweep = 0; sweep < n_sweeps; ++sweep)
       for (unsigned int k = 0; k < n; ++k)
         {
-          const unsigned int            i = backwards ? n - 1 - k : k;
-          std::array<double, n_motions> sum;
-          std::copy_n(
-            level.rhs.begin() + n_motions * i, n_motions, sum.begin());
-          for (double &value : sum)
-            value = -value;
+          const unsigned int i = backwards ? n - 1 - k : k;
+          // What the others leave of the right hand side.
+          std::array<double, n_motions> sum{};
           for (std::size_t e = A.starts[i] + 1; e < A.starts[i + 1]; ++e)
             add_product<n_motions, n_motions, 1>(sum.data(),
                                                  A.block(e),
                                                  level.correction.data() +
                                                    n_motions * A.columns[e]);
-          for (double &value : sum)
-            value = -value;
+          for (int c = 0; c < n_motions; ++c)
+            sum[c] = level.rhs[n_motions * i + c] - sum[c];
           std::fill_n(level.correction.begin() + n_motions * i, n_motions, 0.);
           add_product<n_motions, n_motions, 1>(level.correction.data() +
                                                  n_motions * i,
@@ -772,19 +757,9 @@ namespace Friction
     relax(level, false);
     if (k + 1 < levels.size())
       {
-        const auto &A = level.matrix;
-        for (unsigned int i = 0; i < A.n_rows(); ++i)
-          {
-            std::array<double, n_motions> sum{};
-            for (std::size_t e = A.starts[i]; e < A.starts[i + 1]; ++e)
-              add_product<n_motions, n_motions, 1>(sum.data(),
-                                                   A.block(e),
-                                                   level.correction.data() +
-                                                     n_motions * A.columns[e]);
-            for (int c = 0; c < n_motions; ++c)
-              level.defect[n_motions * i + c] =
-                level.rhs[n_motions * i + c] - sum[c];
-          }
+        vmult(k, level.defect.data(), level.correction.data());
+        for (std::size_t i = 0; i < level.rhs.size(); ++i)
+          level.defect[i] = level.rhs[i] - level.defect[i];
         restrict_to<n_motions>(
           levels[k + 1].rhs, level.prolongation, level.defect.data());
         visit(k + 1);

@@ -209,16 +209,6 @@ namespace Friction
         std::fill_n(B.block(e), dim * dim, 0.);
       }
 
-    const auto truncated_block =
-      [&](const unsigned int i, const unsigned int j, const std::size_t e) {
-        NodeBlock<dim> block =
-          truncation.truncated_block(i, leaf_matrix.block(e), j);
-        if (i == j)
-          for (unsigned int d = 0; d < dim * dim; ++d)
-            block[d] += truncation.curvature(i)[d];
-        return block;
-      };
-
     if (const LeafNode leaf = level.leaf_node(row); leaf.exists())
       for (std::size_t e = leaf_matrix.row_begin(leaf.number());
            e < leaf_matrix.row_end(leaf.number());
@@ -238,7 +228,8 @@ namespace Friction
             }
           else
             {
-              const NodeBlock<dim> block = truncated_block(i, j, e);
+              const NodeBlock<dim> block =
+                truncation.linearized_block(i, leaf_matrix.block(e), j);
               for (unsigned int d = 0; d < dim * dim; ++d)
                 target[d] += block[d];
             }
@@ -291,7 +282,10 @@ namespace Friction
                   if (truncation.is_identity(i) && truncation.is_identity(j))
                     add(child->weight, column, leaf_matrix.block(e));
                   else
-                    add(child->weight, column, truncated_block(i, j, e).data());
+                    add(child->weight,
+                        column,
+                        truncation.linearized_block(i, leaf_matrix.block(e), j)
+                          .data());
                 }
             }
 
@@ -375,19 +369,11 @@ namespace Friction
   {
     // Which leaf nodes have changed, ghosts included, and which leaf rows that
     // touches.
-    std::vector<unsigned int> changed_nodes;
-    for (const Truncation<dim> *special :
-         std::initializer_list<const Truncation<dim> *>{&new_truncation,
-                                                        &truncation})
-      for (const unsigned int node : special->changed_nodes())
-        if (!truncation.agrees(new_truncation, node))
-          changed_nodes.push_back(node);
+    const std::vector<unsigned int> changed_nodes =
+      truncation.differences(new_truncation);
     if (!true_on_any_process(!changed_nodes.empty(),
                              constraints.communicator()))
       return 0;
-    std::sort(changed_nodes.begin(), changed_nodes.end());
-    changed_nodes.erase(std::unique(changed_nodes.begin(), changed_nodes.end()),
-                        changed_nodes.end());
     for (const unsigned int node : changed_nodes)
       truncation.set(
         node, new_truncation.projector(node), new_truncation.curvature(node));

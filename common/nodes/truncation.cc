@@ -1,5 +1,7 @@
 #include <common/nodes/truncation.h>
 
+#include <algorithm>
+
 #include <cmath>
 
 namespace Friction
@@ -76,6 +78,37 @@ namespace Friction
     if (slot[j] != identity_slot)
       result = times<dim>(result, projectors[slot[j]]);
     return result;
+  }
+
+
+
+  template <int dim>
+  NodeBlock<dim>
+  Truncation<dim>::linearized_block(const unsigned int i,
+                                    const double      *block,
+                                    const unsigned int j) const
+  {
+    NodeBlock<dim> result = truncated_block(i, block, j);
+    if (i == j)
+      for (unsigned int d = 0; d < dim * dim; ++d)
+        result[d] += curvature(i)[d];
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::vector<unsigned int>
+  Truncation<dim>::differences(const Truncation &other) const
+  {
+    std::vector<unsigned int> nodes;
+    for (const std::vector<unsigned int> *some : {&specials, &other.specials})
+      for (const unsigned int node : *some)
+        if (!agrees(other, node))
+          nodes.push_back(node);
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    return nodes;
   }
 
 

@@ -64,8 +64,18 @@ namespace Friction
                                    const double      *block,
                                    const unsigned int j) const;
 
+    /** The same with the second derivative: that of
+     * $T(A+\omega'')T$. */
+    NodeBlock<dim> linearized_block(const unsigned int i,
+                                    const double      *block,
+                                    const unsigned int j) const;
+
     /** Both subspace and second derivative of a node agree with another's. */
     bool agrees(const Truncation &other, const unsigned int node) const;
+
+    /** The nodes at which it does not agree with another, ghosts included, in
+     * ascending order. */
+    std::vector<unsigned int> differences(const Truncation &other) const;
 
     /** The nodes, ghosts included, that were ever given a subspace other than
      * everything. */

@@ -71,21 +71,34 @@ namespace
     return T * W * T;
   }
 
-  // P of a level, and its matrix, column by column.
+  // A linear map, column by column.
+  template <typename Map>
+  Eigen::MatrixXd
+  columns_of(const unsigned int n_rows,
+             const unsigned int n_columns,
+             const Map         &map)
+  {
+    Eigen::MatrixXd result(n_rows, n_columns);
+    for (unsigned int c = 0; c < n_columns; ++c)
+      {
+        const Eigen::VectorXd unit = Eigen::VectorXd::Unit(n_columns, c);
+        map(result.col(c).data(), unit.data());
+      }
+    return result;
+  }
+
+  // P of a level, and its matrix.
   template <int dim>
   Eigen::MatrixXd
   prolongation(const AggregateLevels<dim> &levels,
                const unsigned int          k,
                const unsigned int          n_fine)
   {
-    const unsigned int n = levels.n_motions * levels.n_nodes(k);
-    Eigen::MatrixXd    P(n_fine, n);
-    for (unsigned int c = 0; c < n; ++c)
-      {
-        const Eigen::VectorXd unit = Eigen::VectorXd::Unit(n, c);
-        levels.prolongate(k, P.col(c).data(), unit.data());
-      }
-    return P;
+    return columns_of(n_fine,
+                      levels.n_motions * levels.n_nodes(k),
+                      [&](double *fine, const double *coarse) {
+                        levels.prolongate(k, fine, coarse);
+                      });
   }
 
   template <int dim>
@@ -93,13 +106,8 @@ namespace
   matrix(const AggregateLevels<dim> &levels, const unsigned int k)
   {
     const unsigned int n = levels.n_motions * levels.n_nodes(k);
-    Eigen::MatrixXd    B(n, n);
-    for (unsigned int c = 0; c < n; ++c)
-      {
-        const Eigen::VectorXd unit = Eigen::VectorXd::Unit(n, c);
-        levels.vmult(k, B.col(c).data(), unit.data());
-      }
-    return B;
+    return columns_of(
+      n, n, [&](double *y, const double *x) { levels.vmult(k, y, x); });
   }
 
   // The largest relative difference to products of dense matrices.
@@ -228,13 +236,9 @@ namespace
     // The cycle, and with three sweeps of Gauss-Seidel before and after it.
     const Eigen::MatrixXd A =
       truncated_matrix(problem, truncation.truncation());
-    const unsigned int n = A.rows();
-    Eigen::MatrixXd    M(n, n);
-    for (unsigned int c = 0; c < n; ++c)
-      {
-        const Eigen::VectorXd unit = Eigen::VectorXd::Unit(n, c);
-        levels.apply(M.col(c).data(), unit.data());
-      }
+    const unsigned int    n = A.rows();
+    const Eigen::MatrixXd M =
+      columns_of(n, n, [&](double *v, const double *r) { levels.apply(v, r); });
     // On truncated arguments, which is all that it is for.
     Eigen::MatrixXd TM = M.transpose();
     for (unsigned int c = 0; c < n; ++c)
