@@ -37,7 +37,7 @@ LONG_STUDIES = {
 }
 # What no test can repeat: studies of other systems and of what the tests notice, and
 # the tests themselves.
-NO_TESTS = {"portability", "deliberate-errors", "tests-quick"}
+NO_TESTS = {"portability", "deliberate-errors", "tests-quick", "tests-optimised"}
 TIME_LIMIT = 400
 
 

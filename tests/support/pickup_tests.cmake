@@ -1,14 +1,20 @@
 # What ctest -L can choose from. Each test has one of these labels, and the name of
 # its folder:
 #
-#   quick    the mathematics of every part, and the scenes on small meshes, on one
-#            and two processes
-#   full     what takes longer: more processes, solvers on finer meshes, restarts, bad
-#            input
-#   studies  figures, charts and benchmarks, on tiny meshes
-#   pages    prose, commands of pages, pages in a browser
-#   shipped  with sanitizers only: every scene as it is shipped
-#   build    what only builds, where programs are built on demand
+#   quick      the mathematics of every part, and the scenes on small meshes, on one
+#              and two processes
+#   full       what takes longer: more processes, solvers on finer meshes, histories, bad
+#              input
+#
+# and in trees in release mode only, whose programs are those that a user has:
+#
+#   optimised  what is seen on fine meshes only, runs that are killed, files that are
+#              damaged, inputs at random, pictures, installing
+#   studies    figures, charts and benchmarks, on tiny meshes
+#   pages      prose, commands of pages, pages in a browser
+#
+# Besides there are, with sanitizers, shipped, every scene as it is shipped, and build,
+# what only builds, where programs are built on demand.
 #
 # deal.II itself sets a property LABEL, which ctest does not know.
 
@@ -31,11 +37,12 @@ set(FRICTION_MPI_ENVIRONMENT
   PMIX_MCA_mca_base_suppress_deprecated_warning=1
   PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe)
 
-# label_test(name LABEL quick|full|studies|pages|shipped|build [PROCESSES n]): a test that was
-# added already. Its folder is the part of its name before the first slash. On more
-# than two processes it is never quick.
+# label_test(name LABEL label [PROCESSES n] [BUILDS]): a test that was added already. Its
+# folder is the part of its name before the first slash. On more than two processes it is
+# never quick. If it builds something in this tree, only make can do so several times at
+# once.
 function(label_test name)
-  cmake_parse_arguments(_test "" "LABEL;PROCESSES" "" ${ARGN})
+  cmake_parse_arguments(_test "BUILDS" "LABEL;PROCESSES" "" ${ARGN})
   if(NOT _test_PROCESSES)
     set(_test_PROCESSES 1)
   endif()
@@ -49,6 +56,9 @@ function(label_test name)
     TIMEOUT ${TEST_TIME_LIMIT})
   set_property(TEST ${name} APPEND PROPERTY ENVIRONMENT
     ${FRICTION_MPI_ENVIRONMENT})
+  if(_test_BUILDS AND NOT CMAKE_GENERATOR MATCHES "Makefiles")
+    set_tests_properties(${name} PROPERTIES RESOURCE_LOCK build_tree)
+  endif()
   # What takes long and one processor begins early, or it would have the other
   # processors wait in the end.
   if(NOT _test_LABEL STREQUAL "quick" AND _test_PROCESSES EQUAL 1)
@@ -62,35 +72,32 @@ function(label_test name)
   endif()
 endfunction()
 
-# The programs of all quick tests.
+# The programs of all quick tests, and those that the tests of release mode need.
 add_custom_target(tests-quick)
 add_dependencies(tests-quick step-friction-2d step-friction-3d)
+if(NOT FRICTION_ASSERTIONS)
+  add_custom_target(tests-optimised)
+  add_dependencies(tests-optimised step-friction-2d step-friction-3d)
+endif()
 
-# friction_test_program(target [OPTIMISED] source ...): a program that tests need;
-# those of studies, which are optimised, are built like those of deal.II's tests.
+# friction_test_program(target source ...): a program that tests need.
 function(friction_test_program target)
   friction_executable(${target} ${ARGN})
-  if("OPTIMISED" IN_LIST ARGN)
-    set_target_properties(${target} PROPERTIES
-      EXCLUDE_FROM_ALL ${FRICTION_TESTS_ON_DEMAND})
-  else()
-    add_dependencies(tests-quick ${target})
-  endif()
+  add_dependencies(tests-quick ${target})
+endfunction()
+
+# friction_study_program(target source ...): one that studies need, in release mode.
+function(friction_study_program target)
+  friction_executable(${target} ${ARGN})
+  set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)
+  add_dependencies(tests-optimised ${target})
 endfunction()
 
 # pickup_tests([OPTIMISED] [FULL name ...]): deal.II's tests of a folder. Those that are
-# named have the label full, the others quick. Their programs are built with all others,
-# so that ctest only runs them. They are those of the tree's mode or, OPTIMISED, those of
-# release mode in any tree.
+# named have the label full, the others quick, and all of them optimised if it says so. In
+# debug mode their programs are built with all others, so that ctest only runs them.
 function(pickup_tests)
   cmake_parse_arguments(_pickup "OPTIMISED" "" "FULL" ${ARGN})
-  set(_library friction)
-  if(_pickup_OPTIMISED)
-    set(_library friction-optimised)
-    # For deal.II's macro, and in this function alone.
-    set(CMAKE_BUILD_TYPE Release)
-    set(TEST_LIBRARIES ${_library})
-  endif()
   deal_ii_pickup_tests()
 
   set(_found)
@@ -103,12 +110,14 @@ function(pickup_tests)
     endif()
     # Since 9.5 deal.II builds a program that several tests need in a test of its own.
     if(_test MATCHES "^test_dependency/")
-      label_test(${_test} LABEL build)
+      label_test(${_test} LABEL build BUILDS)
       continue()
     endif()
     string(REGEX REPLACE "^[^/]*/([^.]*)\\..*" "\\1" _name ${_test})
     set(_label quick)
-    if(_name IN_LIST _pickup_FULL)
+    if(_pickup_OPTIMISED)
+      set(_label optimised)
+    elseif(_name IN_LIST _pickup_FULL)
       set(_label full)
       list(APPEND _found ${_name})
     endif()
@@ -116,7 +125,7 @@ function(pickup_tests)
     if(_test MATCHES "mpirun=([0-9]+)")
       set(_processes ${CMAKE_MATCH_1})
     endif()
-    label_test(${_test} LABEL ${_label} PROCESSES ${_processes})
+    label_test(${_test} LABEL ${_label} PROCESSES ${_processes} BUILDS)
   endforeach()
   foreach(_name ${_pickup_FULL})
     if(NOT _name IN_LIST _found AND NOT TEST_PICKUP_REGEX)
@@ -128,11 +137,14 @@ function(pickup_tests)
   foreach(_target ${_targets})
     get_target_property(_type ${_target} TYPE)
     if(_type STREQUAL "EXECUTABLE")
-      set_target_properties(${_target} PROPERTIES
-        EXCLUDE_FROM_ALL ${FRICTION_TESTS_ON_DEMAND})
-      friction_precompile(${_target} ${_library})
+      if(NOT FRICTION_ASSERTIONS)
+        set_target_properties(${_target} PROPERTIES EXCLUDE_FROM_ALL ON)
+      endif()
+      friction_precompile(${_target} friction)
       string(REGEX REPLACE "^[^.]*\\.([^.]*)\\..*" "\\1" _name ${_target})
-      if(NOT _name IN_LIST _pickup_FULL)
+      if(_pickup_OPTIMISED)
+        add_dependencies(tests-optimised ${_target})
+      elseif(NOT _name IN_LIST _pickup_FULL)
         add_dependencies(tests-quick ${_target})
       endif()
       # A file of deal.II 9.4 that makes a test start again from compiling if
