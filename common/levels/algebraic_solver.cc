@@ -1,4 +1,5 @@
 #include <common/levels/algebraic_solver.h>
+#include <common/levels/elimination_cost.h>
 #include <common/parallel/phase_costs.h>
 #include <common/parallel/reductions.h>
 
@@ -41,14 +42,29 @@ namespace Friction
   {
     matrix     = &new_matrix;
     is_current = false;
-    if (method == CoarsestMethod::direct ||
-        (method == CoarsestMethod::automatic &&
-         matrix->m() <= largest_direct_size))
+    if (wants_factorization())
       factorize();
     else
       // A factorisation may be left of a matrix that nothing else could cope
       // with. A hierarchy is kept.
       factorization.reset();
+  }
+
+
+
+  // The couplings of later matrices are those of the first one.
+  bool
+  AlgebraicSolver::wants_factorization()
+  {
+    if (method != CoarsestMethod::automatic)
+      return method == CoarsestMethod::direct;
+    if (matrix->m() <= largest_direct_size)
+      return true;
+    if (!is_thin_known)
+      is_thin = matrix->m() <= largest_thin_size &&
+        elimination_cost(*matrix, n_components) <= largest_direct_cost;
+    is_thin_known = true;
+    return is_thin;
   }
 
 

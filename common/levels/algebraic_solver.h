@@ -51,6 +51,12 @@ namespace Friction
      * also where algebraic multigrid itself stops coarsening. */
     static constexpr types::global_dof_index largest_direct_size = 2000;
 
+    /** Beyond, it is so for long and thin bodies: as long as elimination_cost()
+     * is no more than that of so many unknowns on a square, and the number of
+     * unknowns one that a single process may hold. */
+    static constexpr double                  largest_direct_cost = 1e7;
+    static constexpr types::global_dof_index largest_thin_size   = 100000;
+
     /**
      * @param n_components  of a node; component c of node i has the number
      *                      n_components * i + c.
@@ -118,6 +124,10 @@ namespace Friction
     TrilinosWrappers::SparseMatrix                     hierarchy_matrix;
     std::unique_ptr<TrilinosWrappers::PreconditionAMG> hierarchy;
 
+    // Whether elimination is cheap; found out at the first matrix.
+    bool is_thin       = false;
+    bool is_thin_known = false;
+
     bool         is_current      = false; // made of the present matrix
     bool         is_worn_out     = false; // the hierarchy
     unsigned int new_iterations  = 0;     // when the hierarchy was new
@@ -125,6 +135,8 @@ namespace Friction
     unsigned int setups          = 0;
 
     VectorType residual, direction, preconditioned, image;
+
+    bool wants_factorization();
 
     void factorize();
 

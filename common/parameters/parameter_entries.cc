@@ -409,7 +409,7 @@ namespace Friction
        choice("automatic|direct|algebraic multigrid"),
        "How the coarsest mesh is solved: by a sparse factorisation, by "
        "conjugate gradients with algebraic multigrid, or by whichever is "
-       "quicker for its size."},
+       "quicker for its size and shape."},
       {"Solver",
        "Truncation",
        "phases",

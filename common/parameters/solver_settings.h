@@ -44,7 +44,7 @@ namespace Friction
    */
   enum class CoarsestMethod
   {
-    automatic,          ///< whichever is quicker for its number of unknowns
+    automatic,          ///< whichever is quicker for its size and shape
     direct,             ///< by a sparse factorisation
     algebraic_multigrid ///< by conjugate gradients with algebraic multigrid
   };
