@@ -3,8 +3,8 @@
 
 // The headers of deal.II, Eigen and the standard library that many files here
 // include, and that take ten of the twelve seconds that such a file would take
-// to compile: parsed once for the library, the programs and all tests. Each file
-// includes what it needs all the same, and compiles without this one
+// to compile: parsed once for the library, the programs and all tests. Each
+// file includes what it needs all the same, and compiles without this one
 // (-DFRICTION_PRECOMPILED_HEADERS=OFF).
 
 #include <deal.II/base/conditional_ostream.h>
