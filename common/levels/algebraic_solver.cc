@@ -147,7 +147,9 @@ namespace Friction
   AlgebraicSolver::solve(VectorType &x, const VectorType &b)
   {
     last_iterations = 0;
-    if (is_direct())
+    if (is_direct() && is_thin)
+      conjugate_gradients(x, b, [](VectorType &) {});
+    else if (is_direct())
       factorization->solve(x, b);
     else
       {

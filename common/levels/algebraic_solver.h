@@ -52,8 +52,10 @@ namespace Friction
     static constexpr types::global_dof_index largest_direct_size = 2000;
 
     /** Beyond, it is so for long and thin bodies: as long as elimination_cost()
-     * is no more than that of so many unknowns on a square, and the number of
-     * unknowns one that a single process may hold. */
+     * is no more than this, a sixth of what it is for so many unknowns on a
+     * square, and the number of unknowns one that a single process may hold.
+     * The matrix of a body that is thousands of times as long as thick is so
+     * badly conditioned that its factors are a preconditioner only. */
     static constexpr double                  largest_direct_cost = 1e7;
     static constexpr types::global_dof_index largest_thin_size   = 100000;
 

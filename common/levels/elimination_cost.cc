@@ -26,8 +26,9 @@ namespace Friction
         {
           const std::size_t n_here = mine.size();
           mine.push_back(0);
-          for (auto entry = matrix.begin(row); entry != matrix.end(row);
-               ++entry)
+          // Either of these copies a row.
+          const auto end = matrix.end(row);
+          for (auto entry = matrix.begin(row); entry != end; ++entry)
             {
               const unsigned int node = entry->column() / n_components;
               if (entry->column() % n_components == 0 &&
@@ -52,49 +53,71 @@ namespace Friction
 
 
 
-    // Layers of what hangs together with a node, which is the first one.
-    Graph
-    layers_from(const unsigned int start, const Graph &graph)
+    // Finds layers, in one graph, any number of times. A node belongs to the
+    // search that it has been reached by last.
+    class Layers
     {
-      std::vector<char> is_reached(graph.size(), false);
-      is_reached[start] = true;
-      Graph layers(1, {start});
-      while (true)
-        {
-          std::vector<unsigned int> next;
-          for (const unsigned int node : layers.back())
-            for (const unsigned int neighbour : graph[node])
-              if (!is_reached[neighbour])
-                {
-                  is_reached[neighbour] = true;
-                  next.push_back(neighbour);
-                }
-          if (next.empty())
-            return layers;
-          layers.push_back(std::move(next));
-        }
-    }
+    public:
+      explicit Layers(const Graph &graph)
+        : graph(graph)
+        , reached_by(graph.size(), 0)
+      {}
 
+      bool
+      has_been_at(const unsigned int node) const
+      {
+        return reached_by[node] != 0;
+      }
 
+      // The layers from one end: as long as the layers become more if they
+      // begin at a node of the last one, with the fewest neighbours, they do.
+      Graph
+      from_one_end(const unsigned int start)
+      {
+        Graph layers = from(start);
+        while (true)
+          {
+            unsigned int end = layers.back().front();
+            for (const unsigned int node : layers.back())
+              if (graph[node].size() < graph[end].size())
+                end = node;
+            if (end == start)
+              return layers;
+            Graph others = from(end);
+            if (others.size() <= layers.size())
+              return layers;
+            layers = std::move(others);
+          }
+      }
 
-    // The layers from one end: as long as the layers become more if they begin
-    // at a node of the last one, with the fewest neighbours, they do.
-    Graph
-    layers_from_one_end(const unsigned int start, const Graph &graph)
-    {
-      Graph layers = layers_from(start, graph);
-      while (true)
-        {
-          unsigned int end = layers.back().front();
-          for (const unsigned int node : layers.back())
-            if (graph[node].size() < graph[end].size())
-              end = node;
-          Graph others = layers_from(end, graph);
-          if (others.size() <= layers.size())
-            return layers;
-          layers = std::move(others);
-        }
-    }
+    private:
+      const Graph              &graph;
+      std::vector<unsigned int> reached_by;
+      unsigned int              n_searches = 0;
+
+      // Layers of what hangs together with a node, which is the first one.
+      Graph
+      from(const unsigned int start)
+      {
+        ++n_searches;
+        reached_by[start] = n_searches;
+        Graph layers(1, {start});
+        while (true)
+          {
+            std::vector<unsigned int> next;
+            for (const unsigned int node : layers.back())
+              for (const unsigned int neighbour : graph[node])
+                if (reached_by[neighbour] != n_searches)
+                  {
+                    reached_by[neighbour] = n_searches;
+                    next.push_back(neighbour);
+                  }
+            if (next.empty())
+              return layers;
+            layers.push_back(std::move(next));
+          }
+      }
+    };
   } // namespace
 
 
@@ -103,17 +126,18 @@ namespace Friction
   elimination_cost(const TrilinosWrappers::SparseMatrix &matrix,
                    const unsigned int                    n_components)
   {
-    const Graph       graph = node_graph(matrix, n_components);
-    std::vector<char> is_done(graph.size(), false);
-    double            cost = 0.;
+    Assert(matrix.local_range().first % n_components == 0 &&
+             matrix.m() % n_components == 0,
+           ExcMessage("All components of a node belong to one process."));
+    const Graph graph = node_graph(matrix, n_components);
+    Layers      search(graph);
+    double      cost = 0.;
     for (unsigned int start = 0; start < graph.size(); ++start)
-      if (!is_done[start])
+      if (!search.has_been_at(start))
         {
-          const Graph layers = layers_from_one_end(start, graph);
+          const Graph layers = search.from_one_end(start);
           for (std::size_t l = 0; l < layers.size(); ++l)
             {
-              for (const unsigned int node : layers[l])
-                is_done[node] = true;
               const double here = n_components * layers[l].size();
               const double next =
                 l + 1 < layers.size() ? n_components * layers[l + 1].size() : 0;

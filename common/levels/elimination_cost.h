@@ -17,12 +17,13 @@ namespace Friction
    * The layers are those of Cuthill and McKee (1969), from a node that is as
    * far from all others as George and Liu's search finds one (1979).
    *
-   * @param matrix        its rows may be owned by any of the processes; all
-   *                      components of a node by the same one
+   * @param matrix        its rows may be owned by any of the processes, in the
+   *                      order of their ranks; all components of a node by the
+   *                      same one
    * @param n_components  of a node: component c of node i has the number
    *                      n_components * i + c
    * @return the same number on all processes. Collective: each process gets the
-   * graph of all nodes, as it would for a factorisation.
+   * graph of all nodes.
    */
   double elimination_cost(const dealii::TrilinosWrappers::SparseMatrix &matrix,
                           const unsigned int n_components);

@@ -1,9 +1,8 @@
 // What it costs to factorise a matrix, told from its graph, for boxes of nodes
 // that are coupled to all around them, on one process and on two:
 //
-// - it is that of the layers of a strip, which begin at a corner, or nearly so
-// if the
-//   nodes are numbered so that they begin at another node of an end,
+// - it is that of the layers of a strip, which begin at a corner,
+// - or nearly so, if its nodes are numbered in another way,
 // - a symbolic factorisation along the body takes no more, and at least a
 //   twelfth,
 // - parts that do not hang together add up,
@@ -258,6 +257,23 @@ main(int argc, char **argv)
 
   check(is_factorised({{2000, 2, 1}}, 2) && is_factorised({{1000, 2, 2}}, 3),
         "strips and bars are factorised");
+  // As long a strip as this is badly conditioned.
+  {
+    const Size                     n{{8000, 2, 1}};
+    TrilinosWrappers::SparseMatrix matrix;
+    make_matrix(matrix, box(n, in_order(n)), 2);
+    AlgebraicSolver solver(CoarsestMethod::automatic, 2);
+    solver.initialize(matrix);
+    VectorType x(matrix.locally_owned_range_indices(), MPI_COMM_WORLD), b(x),
+      Ax(x);
+    b = 1.;
+    solver.solve(x, b);
+    matrix.vmult(Ax, x);
+    Ax -= b;
+    check(solver.is_direct() && Ax.l2_norm() < 1e-6 * b.l2_norm(),
+          "a long strip is solved");
+  }
+
   check(!is_factorised({{64, 63, 1}}, 2) && !is_factorised({{16, 16, 16}}, 3),
         "squares and cubes of as many unknowns are not");
 }
