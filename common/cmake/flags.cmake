@@ -9,6 +9,13 @@
 #
 # Debug information of whole variables makes libraries of 100 MB and a third of
 # the time that compiling takes, and is there if asked for.
+# FRICTION_ASSERTIONS says which of the two it is.
+if(CMAKE_BUILD_TYPE STREQUAL "Debug")
+  set(FRICTION_ASSERTIONS ON)
+else()
+  set(FRICTION_ASSERTIONS OFF)
+endif()
+
 include(CheckCXXCompilerFlag)
 include(CheckCXXSourceCompiles)
 

@@ -60,11 +60,10 @@ namespace Friction
       return method == CoarsestMethod::direct;
     if (matrix->m() <= largest_direct_size)
       return true;
-    if (!is_thin_known)
+    if (!is_thin)
       is_thin = matrix->m() <= largest_thin_size &&
         elimination_cost(*matrix, n_components) <= largest_direct_cost;
-    is_thin_known = true;
-    return is_thin;
+    return *is_thin;
   }
 
 
@@ -147,7 +146,7 @@ namespace Friction
   AlgebraicSolver::solve(VectorType &x, const VectorType &b)
   {
     last_iterations = 0;
-    if (is_direct() && is_thin)
+    if (is_direct() && is_thin.value_or(false))
       conjugate_gradients(x, b, [](VectorType &) {});
     else if (is_direct())
       factorization->solve(x, b);

@@ -11,6 +11,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 namespace Friction
 {
@@ -91,7 +92,8 @@ namespace Friction
       return factorization != nullptr;
     }
 
-    /** Conjugate gradient iterations in the last solution; 0 if direct. */
+    /** Conjugate gradient iterations in the last solution; 0 if it was direct,
+     * and not by factors as a preconditioner. */
     unsigned int
     n_iterations() const
     {
@@ -126,9 +128,9 @@ namespace Friction
     TrilinosWrappers::SparseMatrix                     hierarchy_matrix;
     std::unique_ptr<TrilinosWrappers::PreconditionAMG> hierarchy;
 
-    // Whether elimination is cheap; found out at the first matrix.
-    bool is_thin       = false;
-    bool is_thin_known = false;
+    // Whether elimination of many unknowns is cheap; found out at the first
+    // matrix of so many.
+    std::optional<bool> is_thin;
 
     bool         is_current      = false; // made of the present matrix
     bool         is_worn_out     = false; // the hierarchy

@@ -20,7 +20,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <numeric>
 #include <set>
 #include <string>
@@ -28,19 +27,10 @@
 
 using namespace dealii;
 using namespace Friction;
+using Tests::check_everywhere;
 
 namespace
 {
-  std::ofstream output;
-
-  void
-  check(const bool good, const std::string &what)
-  {
-    Tests::check_everywhere(good, what, output);
-  }
-
-
-
   using Size = std::array<unsigned int, 3>;
 
   // The numbers of the neighbours of all nodes, themselves included.
@@ -211,18 +201,16 @@ int
 main(int argc, char **argv)
 {
   Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-    output.open("output");
 
   for (const Size n : {Size{{20, 2, 1}}, Size{{30, 3, 1}}, Size{{25, 2, 2}}})
     {
       const unsigned int dim         = n[2] > 1 ? 3 : 2;
       const double       closed_form = cost_from_a_corner(n, dim);
-      check(cost(n, in_order(n), dim) == closed_form,
-            "a strip costs what its layers do");
+      check_everywhere(cost(n, in_order(n), dim) == closed_form,
+                       "a strip costs what its layers do");
       const double another = cost(n, shuffled(n), dim);
-      check(std::abs(another - closed_form) < 0.1 * closed_form,
-            "in whatever way its nodes are numbered");
+      check_everywhere(std::abs(another - closed_form) < 0.1 * closed_form,
+                       "in whatever way its nodes are numbered");
     }
 
   for (const Size n : {Size{{40, 3, 1}},
@@ -234,8 +222,9 @@ main(int argc, char **argv)
       const unsigned int dim     = n[2] > 1 ? 3 : 2;
       const double       exact   = symbolic_cost(n, dim);
       const double       by_them = cost(n, in_order(n), dim);
-      check(exact <= by_them && by_them <= 12 * exact,
-            "a symbolic factorisation takes no more, and a twelfth at least");
+      check_everywhere(
+        exact <= by_them && by_them <= 12 * exact,
+        "a symbolic factorisation takes no more, and a twelfth at least");
     }
 
   {
@@ -251,13 +240,14 @@ main(int argc, char **argv)
       }
     TrilinosWrappers::SparseMatrix matrix;
     make_matrix(matrix, graph, 2);
-    check(elimination_cost(matrix, 2) == 2 * cost(n, in_order(n), 2),
-          "two parts cost twice as much as one");
+    check_everywhere(elimination_cost(matrix, 2) == 2 * cost(n, in_order(n), 2),
+                     "two parts cost twice as much as one");
   }
 
-  check(is_factorised({{2000, 2, 1}}, 2) && is_factorised({{1000, 2, 2}}, 3),
-        "strips and bars are factorised");
-  // As long a strip as this is badly conditioned.
+  check_everywhere(is_factorised({{2000, 2, 1}}, 2) &&
+                     is_factorised({{1000, 2, 2}}, 3),
+                   "strips and bars are factorised");
+  // By its factors, as preconditioner.
   {
     const Size                     n{{8000, 2, 1}};
     TrilinosWrappers::SparseMatrix matrix;
@@ -270,10 +260,11 @@ main(int argc, char **argv)
     solver.solve(x, b);
     matrix.vmult(Ax, x);
     Ax -= b;
-    check(solver.is_direct() && Ax.l2_norm() < 1e-6 * b.l2_norm(),
-          "a long strip is solved");
+    check_everywhere(solver.is_direct() && Ax.l2_norm() < 1e-6 * b.l2_norm(),
+                     "a long strip is solved");
   }
 
-  check(!is_factorised({{64, 63, 1}}, 2) && !is_factorised({{16, 16, 16}}, 3),
-        "squares and cubes of as many unknowns are not");
+  check_everywhere(!is_factorised({{64, 63, 1}}, 2) &&
+                     !is_factorised({{16, 16, 16}}, 3),
+                   "squares and cubes of as many unknowns are not");
 }
