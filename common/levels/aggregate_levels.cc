@@ -125,37 +125,40 @@ namespace Friction
 
     // The pseudo-inverse of a symmetric positive semidefinite matrix, scaled so
     // that translations and rotations, stiff parts and soft ones are the same.
-    template <typename Matrix>
-    Matrix
-    scaled_pseudo_inverse(Matrix a)
+    // One function for blocks and whole matrices: for each size of its own the
+    // compiler would take ten seconds, and a block's eigenvalues take longer
+    // than its memory.
+    Eigen::MatrixXd
+    scaled_pseudo_inverse(Eigen::MatrixXd a)
     {
-      const int       n = a.rows();
-      Eigen::VectorXd s(n);
+      const int           n = a.rows();
+      std::vector<double> s(n);
       for (int i = 0; i < n; ++i)
         s[i] = a(i, i) > 0 ? 1. / std::sqrt(a(i, i)) : 0.;
       for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i)
           a(i, j) *= s[i] * s[j];
-      const Eigen::SelfAdjointEigenSolver<Matrix> solver(a);
-      Matrix                                      result = a;
-      result.setZero();
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a);
+      const Eigen::MatrixXd &vectors = solver.eigenvectors();
+      a.setZero();
       for (int k = 0; k < n; ++k)
         if (solver.eigenvalues()[k] > relative_cut)
-          result += solver.eigenvectors().col(k) *
-            solver.eigenvectors().col(k).transpose() / solver.eigenvalues()[k];
+          for (int j = 0; j < n; ++j)
+            for (int i = 0; i < n; ++i)
+              a(i, j) +=
+                vectors(i, k) * vectors(j, k) / solver.eigenvalues()[k];
       for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i)
-          result(i, j) *= s[i] * s[j];
-      return result;
+          a(i, j) *= s[i] * s[j];
+      return a;
     }
 
     template <int n>
     std::array<double, n * n>
     inverse_block(const double *block)
     {
-      using Matrix = Eigen::Matrix<double, n, n>;
-      const Matrix inverse =
-        scaled_pseudo_inverse<Matrix>(Eigen::Map<const Matrix>(block));
+      const Eigen::MatrixXd inverse =
+        scaled_pseudo_inverse(Eigen::Map<const Eigen::MatrixXd>(block, n, n));
       std::array<double, n * n> result;
       std::copy_n(inverse.data(), n * n, result.begin());
       return result;
