@@ -7,7 +7,7 @@ import numpy as np
 from expressions import NotUnderstood
 from nodal_forces import nodal_loads
 from recomputed import Recomputed
-from scene_check import boundary_id, compare_with_scene
+from scene_check import compare_with_scene
 from verdict import ROUNDING, Verdict, relative
 
 
@@ -332,12 +332,12 @@ def least_force(found, scene):
     search for them begins, which are a million times as large or more where a force is
     to be zero."""
     level, largest = found.level, 0.
-    platens = dict(scene.conditions("Boundary conditions/Force"))
     try:
-        for key, components in scene.conditions("Boundary conditions/Displacement"):
-            if key in platens:
-                nodes = np.unique(level.boundary_faces[level.boundary_ids
-                                                       == boundary_id(key)])
+        platens = dict(scene.boundary_conditions("Boundary conditions/Force"))
+        for boundary, components in scene.boundary_conditions(
+                "Boundary conditions/Displacement"):
+            if boundary in platens:
+                nodes = np.unique(level.boundary_faces[level.boundary_ids == boundary])
                 texts = ["0" if c == "free" else c for c in components]
                 field = scene.vector_field(texts, level.vertices[nodes])
                 largest = max(largest, np.abs(field).max(initial=0))
@@ -352,22 +352,22 @@ def check_given_forces(verdict, found, reported, scene, least, tolerance):
     Returns entries that are beyond this program."""
     level, is_taken = found.level, np.zeros(found.u.shape, bool)
     reactions = reactions_at_nodes(found)
-    platens = dict(scene.conditions("Boundary conditions/Force"))
     unit = max(found.pressing.sum(), np.abs(nodal_loads(
         level, level.body_force, level.traction_faces, level.tractions)).sum())
     unit = max([unit, least, *reported["normal_forces_before"]])
     try:
-        for key, components in scene.conditions("Boundary conditions/Displacement"):
-            if not platens:
-                break
-            nodes = np.unique(level.boundary_faces[level.boundary_ids
-                                                   == boundary_id(key)])
+        platens = dict(scene.boundary_conditions("Boundary conditions/Force"))
+        if not platens:
+            return []
+        for boundary, components in scene.boundary_conditions(
+                "Boundary conditions/Displacement"):
+            nodes = np.unique(level.boundary_faces[level.boundary_ids == boundary])
             own = np.zeros(found.u.shape, bool)
             own[nodes] = [c != "free" for c in components]
             own &= ~is_taken
             is_taken |= own
             own &= level.is_prescribed
-            given = platens.pop(key, [])
+            given = platens.pop(boundary, [])
             texts = ["0" if c == "free" else c for c in components]
             moved = found.u - scene.vector_field(texts, level.vertices)
             for d in [d for d, force in enumerate(given) if force != "free"]:
@@ -376,17 +376,16 @@ def check_given_forces(verdict, found, reported, scene, least, tolerance):
                 force = reactions[own[:, d], d].sum()
                 unit = max(unit, abs(wanted), abs(force))
                 verdict.check(None, abs(force - wanted) / (unit or 1.), tolerance,
-                              f"the force on boundary {key} is not that of "
+                              f"the force on boundary {boundary} is not that of "
                               "'Boundary conditions/Force'")
-                said = reported.get("forces", {}).get(f"platen_{key}")
-                verdict.demand(said is not None, f"history.h5 has no 'platen_{key}'")
+                said = reported.get("forces", {}).get(f"platen_{boundary}")
+                verdict.demand(said is not None, f"history.h5 has no 'platen_{boundary}'")
                 if said is not None:
                     verdict.check(None, np.abs(moved[own[:, d], d] - said[d])
                                   / found.largest_u, tolerance,
-                                  f"boundary {key} is not where history.h5 says")
-        for key in platens:
-            boundary_id(key)
-            verdict.demand(False, f"boundary {key} has a force and no displacement")
+                                  f"boundary {boundary} is not where history.h5 says")
+        for boundary in platens:
+            verdict.demand(False, f"boundary {boundary} has a force and no displacement")
     except NotUnderstood as error:
         return [f"'Boundary conditions/Force' ({error})"]
     return []

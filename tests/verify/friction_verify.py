@@ -2,14 +2,16 @@
 """Recomputes what a run of step-friction-2d or step-friction-3d has found, and says
 whether its certificate is true.
 
-Usage: friction-verify DIRECTORY [--tolerance X]
+Usage: friction-verify DIRECTORY [--tolerance X] [--mesh FILE]
 
 DIRECTORY is the output directory of a run with 'Output/Verification=true'. This
 program shares no code with the one it looks at. From history.h5 it takes the scene
 and the reported numbers, from verify-NN.h5 the mesh and the displacement of level NN.
 Residual, gaps, normals, measures, hanging nodes and nodal loads it finds by itself, and
 loads, prescribed displacements, material, obstacle and law of friction are compared
-with what the scene says. Needs Python with numpy and h5py.
+with what the scene says. If that has names of groups of a mesh file, FILE is this mesh
+file, or what belongs to names is taken as the run had it. Needs Python with numpy and
+h5py.
 
 A row per level:
 
@@ -47,7 +49,7 @@ except ImportError as error:
 
 from checks import verify_level
 from run_data import Level, NotReadable, read_history
-from scene_text import SceneText
+from scene_text import SceneText, group_names
 from verdict import COLUMNS
 
 
@@ -59,10 +61,11 @@ def tolerance_of(scene, row):
     return tolerance
 
 
-def read_level(text, path):
-    """What the run wrote of a level, and the scene in its dimension."""
+def read_level(text, path, groups=None):
+    """What the run wrote of a level, and the scene in its dimension, with the names of
+    groups."""
     level = Level(path)
-    scene = SceneText(text, level.dim, level.time)
+    scene = SceneText(text, level.dim, level.time, groups)
     sections = scene.sections("Obstacle")
     for contact in level.contacts:
         section = sections.get(contact.number)
@@ -73,8 +76,9 @@ def read_level(text, path):
     return level, scene
 
 
-def verify(directory, tolerance=None):
+def verify(directory, tolerance=None, mesh=None):
     """Prints the table; returns the exit status."""
+    groups = group_names(mesh) if mesh else None
     text, rows = read_history(directory)
     files = [(row, directory / f"verify-{row['level']:02d}.h5") for row in rows]
     missing = [str(row["level"]) for row, path in files if not path.is_file()]
@@ -87,7 +91,7 @@ def verify(directory, tolerance=None):
           + "  verdict")
     refuted, complaints, remarks, before = [], [], [], None
     for row, path in files:
-        level, scene = read_level(text, path)
+        level, scene = read_level(text, path, groups)
         if level.level != row["level"]:
             raise NotReadable(f"'{path}' is that of another level.")
         verdict, unknown = verify_level(level, row, scene,
@@ -126,9 +130,11 @@ def main():
     parser.add_argument("directory", type=Path, help="output directory of a run")
     parser.add_argument("--tolerance", type=float, metavar="X",
                         help="largest violation, in place of the scene's")
+    parser.add_argument("--mesh", type=Path, metavar="FILE",
+                        help="the scene's mesh file, for names of groups")
     options = parser.parse_args()
     try:
-        return verify(options.directory, options.tolerance)
+        return verify(options.directory, options.tolerance, options.mesh)
     except NotReadable as error:
         print(f"friction-verify: {error}", file=sys.stderr)
         return 2

@@ -437,6 +437,35 @@ def check_unknown(work):
            "unknown: an expression", out + err)
 
 
+def check_names(work):
+    """Names of groups are those of the mesh file, if that is given."""
+    directory, mesh = work / "names", work / "swapped.msh"
+    run("wall", directory, [
+        "Boundary conditions/Traction=top: 0, -load; left: push, 0",
+        "Contact/Boundary id=floor", "Contact 2/Boundary id=wall",
+        "Material/Regions=block: 1, 0.3"])
+    original = ROOT / "step-friction-2d/scenes/wall.msh"
+    status, out, err = verify(directory)
+    report(status == 0 and out.count("--mesh gives") == 4, "names: without the mesh file",
+           out + err)
+    status, out, err = verify(directory, "--mesh", original)
+    report(status == 0 and "does not understand" not in out, "names: confirmed",
+           out + err)
+    for old, new, reason in (("top", "left", "Traction' is not"),
+                             ("floor", "wall", "Boundary id' is not"),
+                             ("block", "stone", "'block', which is no name")):
+        text = original.read_text()
+        mesh.write_text(text.replace(f'"{new}"', '"?"').replace(
+            f'"{old}"', f'"{new}"').replace('"?"', f'"{old}"'))
+        status, out, err = verify(directory, "--mesh", mesh)
+        report(status == (new != "stone") and reason in out,
+               f"names: {old} and {new} exchanged", out + err)
+    mesh.write_text("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n")
+    status, _, err = verify(directory, "--mesh", mesh)
+    report(status == 2 and "has no section $PhysicalNames" in err, "names: there are none",
+           err)
+
+
 def check_expressions():
     """Of our own parser, against Python's."""
     x = np.array([[.5, 2.], [-1., .3]])
@@ -473,6 +502,7 @@ def main():
         check_sloppy(work)
         check_stale(work)
         check_unknown(work)
+        check_names(work)
     sys.exit(failures > 0)
 
 

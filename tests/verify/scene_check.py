@@ -8,13 +8,6 @@ from unit_cell import corner_functions, gauss_points
 from verdict import relative
 
 
-def boundary_id(key):
-    """Names of groups are known to the mesh file only."""
-    if not key.strip().isdigit():
-        raise NotUnderstood(key)
-    return int(key)
-
-
 def compare_with_scene(verdict, level, scene, hanging, limit):
     """Whether the run has solved what its scene says. Returns entries that are beyond
     this program."""
@@ -43,10 +36,8 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
         for key, numbers in scene.conditions("Material/Regions"):
             if key.startswith("where"):
                 inside = scene.evaluate(key[len("where"):], middles) != 0
-            elif key.isdigit():
-                inside = level.cell_ids == int(key)
-            else:  # a name, which is known to the mesh file only
-                raise NotUnderstood(key)
+            else:
+                inside = level.cell_ids == scene.group(key, 0)
             given[inside] = len(materials)
             kind = numbers[2] if len(numbers) > 2 else level.volumetric_strain
             materials.append([scene.evaluate(numbers[0]), scene.evaluate(numbers[1]),
@@ -63,12 +54,7 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
         # Without an obstacle there is nothing to point to.
         normal = ("body" if scene[obstacle + "/Kind"] == "none"
                   else scene[section + "/Contact normal"])
-        # A name of the mesh file has become its number.
-        boundary = scene[section + "/Boundary id"]
-        is_same = (not boundary.lstrip("-").isdigit()
-                   or int(boundary) == contact.contact_boundary)
-        verdict.demand(law == contact.friction_law and normal == contact.contact_normal
-                       and is_same,
+        verdict.demand(law == contact.friction_law and normal == contact.contact_normal,
                        f"section '{section}' is not what the scene says")
         own = level.of_contact(contact)
         nodes = X[level.contact_nodes[own]] @ scene.rotation
@@ -86,6 +72,11 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
             same(section + "/Friction bound", np.broadcast_to(bounds, len(nodes)),
                  level.friction_bounds[own])
 
+    def boundary(contact, section):
+        verdict.demand(
+            scene.group(scene[section + "/Boundary id"], 1) == contact.contact_boundary,
+            f"'{section}/Boundary id' is not what the scene says")
+
     def displacement():
         is_set, values = np.zeros((len(X), dim), bool), np.zeros((len(X), dim))
 
@@ -100,14 +91,15 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
             return new
 
         hanging_nodes = list(hanging)
-        platens = dict(scene.conditions("Boundary conditions/Force"))
-        for key, components in scene.conditions("Boundary conditions/Displacement"):
+        platens = dict(scene.boundary_conditions("Boundary conditions/Force"))
+        for boundary, components in scene.boundary_conditions(
+                "Boundary conditions/Displacement"):
             new = prescribe(
-                np.unique(level.boundary_faces[level.boundary_ids == boundary_id(key)]),
+                np.unique(level.boundary_faces[level.boundary_ids == boundary]),
                 components)
             # A platen may be anywhere, but moves as a whole.
             new[hanging_nodes] = False
-            for d, force in enumerate(platens.get(key, [])):
+            for d, force in enumerate(platens.get(boundary, [])):
                 if force != "free" and new[:, d].any():
                     moved = (level.values - values)[new[:, d], d]
                     values[new[:, d], d] += moved.mean()
@@ -130,8 +122,9 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
             points = np.einsum("qv,kvd->kqd", values, X[level.cells]).reshape(-1, dim)
             body = scene.vector_field(components, points)
         values, _ = corner_functions(gauss_points(4, dim - 1)[0])
-        for key, components in scene.conditions("Boundary conditions/Traction"):
-            part = level.boundary_faces[level.boundary_ids == boundary_id(key)]
+        for boundary, components in scene.boundary_conditions(
+                "Boundary conditions/Traction"):
+            part = level.boundary_faces[level.boundary_ids == boundary]
             points = np.einsum("qv,kvd->kqd", values, X[part]).reshape(-1, dim)
             faces.append(part)
             tractions.append(scene.vector_field(components, points))
@@ -150,6 +143,8 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
     pairs = [(contact, sections[contact.number], obstacles[contact.number])
              for contact in level.contacts if contact.number in sections]
     for contact, section, obstacle in pairs:
+        attempt(section + "/Boundary id",
+                lambda c=contact, s=section: boundary(c, s))
         attempt(section + "/Friction bound",
                 lambda c=contact, s=section, o=obstacle: friction(c, s, o))
     attempt("Boundary conditions/Displacement", displacement)

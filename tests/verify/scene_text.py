@@ -8,13 +8,31 @@ from obstacle import Obstacle
 from surface import Surface
 
 
+def group_names(path):
+    """Ids of the groups of a mesh file of Gmsh, by their dimension and name. This section
+    is text in files of all formats, binary ones included."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise NotReadable(f"'{path}' cannot be read: {error.strerror}.") from error
+    groups, (_, _, section) = {}, data.partition(b"$PhysicalNames")
+    for line in section.partition(b"$EndPhysicalNames")[0].splitlines():
+        parts = line.decode(errors="replace").strip().split(None, 2)
+        if len(parts) == 3:
+            groups[int(parts[0]), parts[2].strip('"')] = int(parts[1])
+    if not groups:
+        raise NotReadable(f"'{path}' has no section $PhysicalNames.")
+    return groups
+
+
 class SceneText:
     """What the parameters in history.h5 say. Raises NotUnderstood where that is beyond
     this program."""
 
-    def __init__(self, text, dim, time=None):
-        """time: of a load step, if there are several."""
+    def __init__(self, text, dim, time=None, groups=None):
+        """time: of a load step, if there are several; groups: those of group_names()."""
         self.dim, self.entries, section = dim, {}, ""
+        self.groups = groups or {}
         for line in text.splitlines():
             line = line.split("#")[0].strip()
             if line.startswith("subsection "):
@@ -81,6 +99,17 @@ class SceneText:
     def numbers(self, text):
         return np.array([self.evaluate(part) for part in split(text, ",")], float)
 
+    def group(self, key, codim):
+        """The id of a group of cells (codim=0) or of boundary faces (1), from its id or
+        its name."""
+        if key.lstrip("-").isdigit():
+            return int(key)
+        if (self.dim - codim, key) not in self.groups:
+            raise NotUnderstood(f"'{key}', a name that the file of --mesh gives"
+                                if not self.groups else
+                                f"'{key}', which is no name in the file of --mesh")
+        return self.groups[self.dim - codim, key]
+
     def vector_field(self, components, points):
         """Of the scene as it has been turned, at points of it (n x dim)."""
         original = points @ self.rotation
@@ -94,6 +123,11 @@ class SceneText:
         for part in split(self[entry], ";"):
             key, _, components = part.partition(":")
             yield key.strip(), split(components, ",")
+
+    def boundary_conditions(self, entry):
+        """Pairs of a boundary's id and components."""
+        for key, components in self.conditions(entry):
+            yield self.group(key, 1), components
 
     def obstacle(self, body_size=1., section="Obstacle"):
         """An Obstacle, like that of a verify-NN.h5. What a function says is looked for
