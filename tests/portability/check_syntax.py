@@ -1,9 +1,9 @@
-"""The compiler's syntax check of all sources in a list of compile commands, one for
+"""The compiler's syntax check of all sources in lists of compile commands, one for
 each core at a time, in each of the ways in which they are compiled, with deal.II's
-assertions and without; prints how many of how many pass, and to stderr what the
-compiler says. Further sources are compiled as the first one in the list is.
+assertions and without, where both lists have them; prints how many of how many pass, and to stderr what the
+compiler says. Sources that are in no list are compiled as the first one in a list is.
 
-Usage: check_syntax.py compile_commands.json [SOURCE ...]
+Usage: check_syntax.py compile_commands.json ... [SOURCE ...]
 """
 import concurrent.futures
 import json
@@ -23,11 +23,15 @@ def check(entry):
 
 
 def main():
-    with open(sys.argv[1]) as file:
-        entries = {(entry["file"], " -DDEBUG" in entry["command"]): entry
-                   for entry in json.load(file) if entry["file"].endswith(".cc")}
+    entries = {}
+    for path in [name for name in sys.argv[1:] if name.endswith(".json")]:
+        with open(path) as file:
+            entries.update({(entry["file"], " -DDEBUG" in entry["command"]): entry
+                            for entry in json.load(file)
+                            if entry["file"].endswith(".cc")})
     first = next(iter(entries.values()))
-    for source in map(os.path.abspath, sys.argv[2:]):
+    sources = [name for name in sys.argv[1:] if not name.endswith(".json")]
+    for source in map(os.path.abspath, sources):
         entries[source, False] = dict(first, file=source, command=first[
             "command"].replace(first["file"], source))
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:

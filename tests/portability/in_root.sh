@@ -54,20 +54,26 @@ if [ -n "$tag" ]; then
     -DHDF5_DIR="/usr/lib/$(gcc -dumpmachine)/hdf5/openmpi" \
     -DDEAL_II_WITH_MUPARSER=ON -DDEAL_II_COMPONENT_EXAMPLES=OFF \
     >dealii.log 2>&1 || because "deal.II cannot be configured"
-  configured=no
-  cmake -S . -B build/headers -G Ninja -DCMAKE_BUILD_TYPE=Debug \
-    -DDEAL_II_DIR=/dealii-build -DFRICTION_PRECOMPILED_HEADERS=OFF \
-    -DFRICTION_UNITY_BUILD=OFF \
-    >configure.log 2>&1 && configured=yes
-  # Not the one that the system has as well.
-  grep -q '^deal.II_DIR:PATH=/dealii-build' build/headers/CMakeCache.txt || {
-    configured=no
-    because "another deal.II was found"
-  }
+  configured=yes
+  lists=
+  for mode in Debug Release; do
+    cmake -S . -B build/headers-$mode -G Ninja -DCMAKE_BUILD_TYPE=$mode \
+      -DDEAL_II_DIR=/dealii-build -DFRICTION_PRECOMPILED_HEADERS=OFF \
+      -DFRICTION_UNITY_BUILD=OFF \
+      >>configure.log 2>&1 || configured=no
+    lists="$lists build/headers-$mode/compile_commands.json"
+    # Not the one that the system has as well.
+    grep -q '^deal.II_DIR:PATH=/dealii-build' build/headers-$mode/CMakeCache.txt || {
+      configured=no
+      because "another deal.II was found"
+    }
+  done
   version=$(sed -n 's/.*DEAL_II_PACKAGE_VERSION "\([^"]*\)".*/\1/p' \
     /dealii-build/include/deal.II/base/config.h)
-  checked=$(python3 -B tests/portability/check_syntax.py \
-    build/headers/compile_commands.json tests/install/program/block.cc 2>syntax.log) ||
+  # One word for each list.
+  # shellcheck disable=SC2086
+  checked=$(python3 -B tests/portability/check_syntax.py $lists \
+    tests/install/program/block.cc 2>syntax.log) ||
     because "$(grep -m1 'error:' syntax.log | tr '|' ' ')"
   warnings=$(n_warnings configure.log syntax.log)
   echo "| $suite, headers | $(version_of_compiler) | $version | $configured | $warnings | – | syntax: $checked | $reason |" \
@@ -97,8 +103,10 @@ for scene in hertz:2d cylinder:3d; do
   fi
 done
 
-# All is built, warned of and linked, and the quick tests are run.
-command="cmake --preset debug &&
+# All is built, warned of and linked, in both modes, and the quick tests are run.
+command="cmake --preset release &&
+cmake --build --preset release --target tests-optimised &&
+cmake --preset debug &&
 cmake --build --preset debug"
 bash -euo pipefail -c "$(echo "$command" | with_compiler)" >debug.log 2>&1 ||
   because "$(grep -m1 'rror' debug.log | tr '|' ' ')"
