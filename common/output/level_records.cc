@@ -30,9 +30,13 @@ namespace Friction
     gather_sorted(const std::vector<ContactRecord<dim>> &own,
                   const MPI_Comm                         communicator)
     {
+      // A process by itself need not pack its records in order to keep them.
       std::vector<ContactRecord<dim>> all;
-      for (const auto &part : Utilities::MPI::gather(communicator, own))
-        all.insert(all.end(), part.begin(), part.end());
+      if (Utilities::MPI::n_mpi_processes(communicator) == 1)
+        all = own;
+      else
+        for (const auto &part : Utilities::MPI::gather(communicator, own))
+          all.insert(all.end(), part.begin(), part.end());
 
       std::sort(all.begin(), all.end(), [](const auto &a, const auto &b) {
         for (unsigned int d = 0; d < dim; ++d)
