@@ -65,9 +65,10 @@ namespace
     std::vector<Eigen::VectorXd> columns;
     for (unsigned int i = 0; i < n_nodes; ++i)
       {
-        using Matrix = Eigen::Matrix<double, dim, dim>;
-        const Eigen::Map<const Matrix> T(truncation.projector(i).data());
-        const Eigen::SelfAdjointEigenSolver<Matrix> eigen(T);
+        // Small as it is, a size of its own would cost the compiler seconds.
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+          Eigen::Map<const Eigen::MatrixXd>(
+            truncation.projector(i).data(), dim, dim));
         for (unsigned int d = 0; d < dim; ++d)
           if (eigen.eigenvalues()(d) > .5)
             {
