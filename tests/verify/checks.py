@@ -337,7 +337,7 @@ def least_force(found, scene):
         for boundary, components in scene.boundary_conditions(
                 "Boundary conditions/Displacement"):
             if boundary in platens:
-                nodes = np.unique(level.boundary_faces[level.boundary_ids == boundary])
+                nodes = level.nodes_of_boundary(boundary)
                 texts = ["0" if c == "free" else c for c in components]
                 field = scene.vector_field(texts, level.vertices[nodes])
                 largest = max(largest, np.abs(field).max(initial=0))
@@ -361,7 +361,7 @@ def check_given_forces(verdict, found, reported, scene, least, tolerance):
             return []
         for boundary, components in scene.boundary_conditions(
                 "Boundary conditions/Displacement"):
-            nodes = np.unique(level.boundary_faces[level.boundary_ids == boundary])
+            nodes = level.nodes_of_boundary(boundary)
             own = np.zeros(found.u.shape, bool)
             own[nodes] = [c != "free" for c in components]
             own &= ~is_taken
@@ -408,9 +408,8 @@ def check_reported_forces(verdict, found, reported, least, tolerance):
                          name + "_normal": found.pressing[own].sum(),
                          name + "_tangential": -found.r_T[own].sum(axis=0)})
     others = reactions_at_nodes(found)
-    held = {int(name[len("held_"):]): np.unique(
-        level.boundary_faces[level.boundary_ids == int(name[len("held_"):])])
-        for name in forces if name.startswith("held_")}
+    held = [int(name[len("held_"):]) for name in forces if name.startswith("held_")]
+    held = {boundary: level.nodes_of_boundary(boundary) for boundary in held}
     reactions = sum((forces[name] for name in forces
                      if name.startswith("held_") or name == "pinned"),
                     np.zeros(level.dim))

@@ -138,6 +138,10 @@ class Level:
         self.values[tuple(self.prescribed.T)] = self.prescribed_values
 
 
+    def nodes_of_boundary(self, boundary):
+        """Numbers of the nodes of a boundary, from its id."""
+        return np.unique(self.boundary_faces[self.boundary_ids == boundary])
+
     def of_contact(self, contact):
         """Which contact nodes belong to a contact boundary."""
         return self.contact_sections == contact.number

@@ -72,7 +72,7 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
             same(section + "/Friction bound", np.broadcast_to(bounds, len(nodes)),
                  level.friction_bounds[own])
 
-    def boundary(contact, section):
+    def contact_boundary(contact, section):
         verdict.demand(
             scene.group(scene[section + "/Boundary id"], 1) == contact.contact_boundary,
             f"'{section}/Boundary id' is not what the scene says")
@@ -94,9 +94,7 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
         platens = dict(scene.boundary_conditions("Boundary conditions/Force"))
         for boundary, components in scene.boundary_conditions(
                 "Boundary conditions/Displacement"):
-            new = prescribe(
-                np.unique(level.boundary_faces[level.boundary_ids == boundary]),
-                components)
+            new = prescribe(level.nodes_of_boundary(boundary), components)
             # A platen may be anywhere, but moves as a whole.
             new[hanging_nodes] = False
             for d, force in enumerate(platens.get(boundary, [])):
@@ -144,7 +142,7 @@ def compare_with_scene(verdict, level, scene, hanging, limit):
              for contact in level.contacts if contact.number in sections]
     for contact, section, obstacle in pairs:
         attempt(section + "/Boundary id",
-                lambda c=contact, s=section: boundary(c, s))
+                lambda c=contact, s=section: contact_boundary(c, s))
         attempt(section + "/Friction bound",
                 lambda c=contact, s=section, o=obstacle: friction(c, s, o))
     attempt("Boundary conditions/Displacement", displacement)

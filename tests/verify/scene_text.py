@@ -18,7 +18,7 @@ def group_names(path):
     groups, (_, _, section) = {}, data.partition(b"$PhysicalNames")
     for line in section.partition(b"$EndPhysicalNames")[0].splitlines():
         parts = line.decode(errors="replace").strip().split(None, 2)
-        if len(parts) == 3:
+        if len(parts) == 3 and parts[0].isdigit() and parts[1].isdigit():
             groups[int(parts[0]), parts[2].strip('"')] = int(parts[1])
     if not groups:
         raise NotReadable(f"'{path}' has no section $PhysicalNames.")
