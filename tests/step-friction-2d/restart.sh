@@ -64,11 +64,12 @@ run()
   status=$?
 }
 
-# The processes of the program, but not their launcher.
+# The processes of the program, but not their launcher. Nothing is started for those
+# of others, since what is to be killed goes on meanwhile.
 processes_in()
 {
   for process in /proc/[0-9]*; do
-    [ "$(readlink "$process/exe")" = "$program" ] &&
+    [ "$process/exe" -ef "$program" ] &&
       tr '\0' '\n' <"$process/cmdline" 2>/dev/null |
       grep -q -x "Output/Directory=$1" && echo "${process#/proc/}"
   done
@@ -113,13 +114,19 @@ problem=
 verdict 'a run that is left alone' "$problem"
 check_files 'files of a run that is left alone' whole
 
-# Killed when it has written a checkpoint, a little later each time. A fast
-# machine may be faster than we are, but not always.
+# Killed when it has written a checkpoint, a little later each time. A run may be
+# faster than we are: one that has not been killed at all is begun anew.
 restart=
 kills=0
 level=1
 runs=0
-while [ "$level" -lt "$last" ] && [ ! -d "killed/checkpoint-0$last" ]; do
+while [ "$kills" -eq 0 ] || [ "$level" -lt "$last" ]; do
+  if [ -d "killed/checkpoint-0$last" ]; then
+    [ "$kills" -eq 0 ] || break
+    rm -rf killed
+    restart=
+    level=1
+  fi
   # A run that does not get to its next checkpoint fails below, when it is left alone.
   runs=$((runs + 1))
   [ "$runs" -le 40 ] || break
