@@ -127,6 +127,16 @@ class SmallBlock:
         scalar = np.kron(hats(ny, ny >> level), hats(nx, nx >> level))
         return np.kron(scalar, np.eye(2))
 
+    def coarser(self, matrix, level):
+        """The matrix of the next coarser functions, of that of a level."""
+        nx, ny = (n >> level for n in self.cells)
+        x, y = hats(nx, nx // 2), hats(ny, ny // 2)
+        entries = matrix.reshape(ny + 1, nx + 1, 2, ny + 1, nx + 1, 2)
+        entries = np.einsum("jJ,iI,jicvud,vV,uU->JIcVUd", y, x, entries, y, x,
+                            optimize=True)
+        n = 2 * x.shape[1] * y.shape[1]
+        return entries.reshape(n, n)
+
     def correction(self, u, tau, levels=4, sweeps=3):
         """A V-cycle for the truncated linear problem, below the leaf mesh."""
         free = self.free(u)
@@ -138,7 +148,9 @@ class SmallBlock:
         v = np.zeros_like(u)
         order = list(range(1, levels + 1)) + list(range(levels, 0, -1))
         bases = {k: free[:, None] * self.interpolation(k) for k in set(order)}
-        matrices = {k: m.T @ self.matrix @ m for k, m in bases.items()}
+        matrices = {0: free[:, None] * self.matrix * free}
+        for k in range(levels):
+            matrices[k + 1] = self.coarser(matrices[k], k)
         for step, k in enumerate(order):
             b = bases[k].T @ (gradient - self.matrix @ v)
             if k == levels:
@@ -152,13 +164,14 @@ class SmallBlock:
     def sweeps(matrix, b, number, backwards):
         """Block Gauss-Seidel; functions that truncation has taken stay zero."""
         c = np.zeros_like(b)
-        nodes = range(len(b) // 2)
+        n = len(b) // 2
+        nodes = np.arange(n)
+        inverses = np.linalg.pinv(
+            matrix.reshape(n, 2, n, 2)[nodes, :, nodes, :], 1e-10, True)
         for _ in range(number):
             for p in (reversed(nodes) if backwards else nodes):
                 row = slice(2 * p, 2 * p + 2)
-                block = matrix[row, row]
-                c[row] += np.linalg.pinv(block, 1e-10, True) @ (
-                    b[row] - matrix[row] @ c)
+                c[row] += inverses[p] @ (b[row] - matrix[row] @ c)
         return c
 
     def project(self, u):
@@ -168,11 +181,19 @@ class SmallBlock:
         return result
 
     def step_length(self, u, v, tau, longest=2.0):
-        """The length that minimises the energy: the functional is convex."""
+        """The length that minimises the energy: the functional is convex. Along v it is
+        a parabola, and friction at the contact nodes."""
+        slope, curvature = -self.residual(u) @ v, 0.5 * v @ self.matrix @ v
+        at_rest, shift = u[2 * self.contact], v[2 * self.contact]
+
+        def energy(length):
+            return (length * (slope + length * curvature) +
+                    FRICTION * tau @ np.abs(at_rest + length * shift))
+
         low, high = 0.0, longest
         for _ in range(60):
             left, right = low + (high - low) / 3, high - (high - low) / 3
-            if self.energy(u + left * v, tau) < self.energy(u + right * v, tau):
+            if energy(left) < energy(right):
                 high = right
             else:
                 low = left
