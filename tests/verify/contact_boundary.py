@@ -32,7 +32,7 @@ class ContactBoundary:
 
         # Outwards is away from the cell that the face belongs to.
         table = {}
-        for cell in level.cells:
+        for cell in level.cells[np.isin(level.cells, faces).any(axis=1)]:
             for corners in local_faces(dim):
                 table.setdefault(tuple(sorted(cell[corners])), []).append(cell)
         self.problem = None

@@ -21,10 +21,12 @@ def find_hanging_nodes(level):
 
     def near_middle(candidates, corners):
         """The one nearest to the middle, if it is near; boundaries are curved."""
+        if not candidates:
+            return None
         middle = vertices[corners].mean(axis=0)
         size = np.linalg.norm(vertices[corners[0]] - vertices[corners[-1]])
         candidates = [(np.linalg.norm(vertices[c] - middle), c) for c in candidates]
-        distance, best = min(candidates, default=(np.inf, None))
+        distance, best = min(candidates)
         return best if distance < .35 * size else None
 
     masters, middles = {}, {}

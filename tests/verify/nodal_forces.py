@@ -86,6 +86,8 @@ class Rows:
 
     def __init__(self, level, nodes, hanging):
         self.level, self.nodes, self.hanging = level, np.asarray(nodes, int), hanging
+        self.is_hanging = np.zeros(level.n_nodes, bool)
+        self.is_hanging[list(hanging)] = True
         place = {node: i for i, node in enumerate(self.nodes.tolist())}
         near = np.zeros(level.n_nodes, bool)
         near[self.nodes] = True
@@ -122,19 +124,28 @@ class Rows:
 
     def forces_of_neighbours(self, u):
         """For each node half the sum of |A_pq (u_q - u_p)| over its neighbours q."""
-        couplings = {}
-        for i, k, blocks in zip(self.at.tolist(), self.cells.tolist(), self.blocks):
-            for corner, vertex in enumerate(self.level.cells[k].tolist()):
-                for q, weight in self.hanging.get(vertex, {vertex: 1.}).items():
-                    couplings[i, q] = couplings.get((i, q), 0) + weight * blocks[corner]
-        result = np.zeros(len(self.nodes))
-        if not couplings or not len(self.nodes):
-            return result
-        at, others = np.array(list(couplings)).T
-        forces = np.einsum("kij,kj->ki", np.array(list(couplings.values())),
-                           u[others] - u[self.nodes[at]])
-        np.add.at(result, at, np.linalg.norm(forces, axis=1) / 2)
-        return result
+        dim, n = self.level.dim, self.level.n_nodes
+        vertices = self.level.cells[self.cells]
+        at, q = np.repeat(self.at, vertices.shape[1]), vertices.ravel()
+        blocks = self.blocks.reshape(-1, dim, dim)
+        if not len(q):
+            return np.zeros(len(self.nodes))
+        # A hanging node stands for its masters.
+        stands_for = [(k, master, weight) for k in np.flatnonzero(self.is_hanging[q])
+                      for master, weight in self.hanging[q[k]].items()]
+        if stands_for:
+            own = ~self.is_hanging[q]
+            k, masters, weights = (np.array(values) for values in zip(*stands_for))
+            at, q = np.append(at[own], at[k]), np.append(q[own], masters)
+            blocks = np.concatenate([blocks[own], weights[:, None, None] * blocks[k]])
+        # A_pq is what all cells together have for the two.
+        pairs = at * n + q
+        order = np.argsort(pairs, kind="stable")
+        pairs, first = np.unique(pairs[order], return_index=True)
+        at, q = np.divmod(pairs, n)
+        forces = np.einsum("kij,kj->ki", np.add.reduceat(blocks[order], first),
+                           u[q] - u[self.nodes[at]])
+        return np.bincount(at, np.linalg.norm(forces, axis=1) / 2, len(self.nodes))
 
 
 def area_vectors(corners, points):
