@@ -1,7 +1,9 @@
 """The compiler's syntax check of all sources in lists of compile commands, one for
 each core at a time, in each of the ways in which they are compiled, with deal.II's
-assertions and without, where both lists have them; prints how many of how many pass, and to stderr what the
-compiler says. Sources that are in no list are compiled as the first one in a list is.
+assertions and without, where both lists have them. Prints how many of how many pass,
+and to stderr, as it goes on, what the compiler says and what has been checked. Sources
+that are in no list are compiled as the first one in a list is. Precompiled headers
+of the commands have to be there.
 
 Usage: check_syntax.py compile_commands.json ... [SOURCE ...]
 """
@@ -35,12 +37,14 @@ def main():
         entries[source, False] = dict(first, file=source, command=first[
             "command"].replace(first["file"], source))
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        results = list(pool.map(check, entries.values()))
-    for result in results:
-        sys.stderr.write(result.stderr)
+        failed = set()
+        results = pool.map(check, entries.values())
+        for i, ((file, _), result) in enumerate(zip(entries, results), 1):
+            sys.stderr.write(result.stderr)
+            print(f"{i} of {len(entries)}: {file}", file=sys.stderr, flush=True)
+            if result.returncode != 0:
+                failed.add(file)
     files = {file for file, _ in entries}
-    failed = {file for (file, _), result in zip(entries, results)
-              if result.returncode != 0}
     print(f"{len(files - failed)} of {len(files)}")
     return 0 if files and not failed else 1
 
