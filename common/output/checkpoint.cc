@@ -180,7 +180,6 @@ namespace Friction
     // Besides vectors there are a few numbers per cell, and what disks round
     // up.
     demand_space((part / "mesh").string(),
-                 (part / "trial").string(),
                  communicator,
                  n_cells * (payload + 32) + (1 << 15));
     try

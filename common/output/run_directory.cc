@@ -13,6 +13,17 @@ namespace Friction
 {
   namespace
   {
+    std::string
+    temporary_name(const std::filesystem::path &final_path)
+    {
+      return (final_path.parent_path() /
+              (final_path.stem().string() + ".part" +
+               final_path.extension().string()))
+        .string();
+    }
+
+
+
     // Removes the temporary file on the way out, however we leave, unless it
     // has been renamed before.
     class TemporaryFile
@@ -20,9 +31,7 @@ namespace Friction
     public:
       explicit TemporaryFile(const std::filesystem::path &final_path)
         : final_path(final_path)
-        , temporary(final_path.parent_path() /
-                    (final_path.stem().string() + ".part" +
-                     final_path.extension().string()))
+        , temporary(temporary_name(final_path))
       {}
 
       TemporaryFile(const TemporaryFile &)            = delete;
@@ -153,7 +162,6 @@ namespace Friction
   // again.
   void
   demand_space(const std::string  &file_name,
-               const std::string  &trial,
                const MPI_Comm      communicator,
                const std::uint64_t size)
   {
@@ -163,7 +171,8 @@ namespace Friction
         std::filesystem::absolute(file_name).parent_path(), error);
       bool is_room = error || space.available >= size;
 #ifdef __linux__
-      const int file =
+      const std::string trial = temporary_name(file_name);
+      const int         file =
         ::open(trial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
       if (is_room && file >= 0)
         // Some file systems cannot do this, and have other answers.
@@ -174,8 +183,6 @@ namespace Friction
           ::close(file);
           ::unlink(trial.c_str());
         }
-#else
-      (void)trial;
 #endif
       if (!is_room)
         throw InputError("The file '" + file_name +
@@ -200,7 +207,7 @@ namespace Friction
     if (!first)
       file.leave_alone();
 
-    demand_space(final_name, file.name(), communicator, size);
+    demand_space(final_name, communicator, size);
     try
       {
         write_to(file.name());

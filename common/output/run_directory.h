@@ -38,12 +38,12 @@ namespace Friction
    * Throws an InputError on all processes if a file of @p size bytes cannot be
    * written, since there is no room or a quota. Collective.
    *
-   * @param file_name  what the sentence names.
-   * @param trial      where that much room is taken for a moment: the name of a
-   *                   file that does not exist yet, on the same disk.
+   * @param file_name  what the sentence names. That much room is taken for a
+   *                   moment under the name of the temporary file that
+   *                   write_then_rename() writes, so that a program which is
+   *                   killed meanwhile leaves nothing under the final name.
    */
   void demand_space(const std::string  &file_name,
-                    const std::string  &trial,
                     const MPI_Comm      communicator,
                     const std::uint64_t size);
 

@@ -483,7 +483,6 @@ namespace Friction
 
       // HDF5 does not say in one sentence that the disk is full, see History.
       demand_space(name,
-                   name,
                    communicator,
                    Utilities::MPI::max(all.size(), communicator) + (1 << 16));
       on_first_process(communicator, [&]() {

@@ -108,8 +108,13 @@ main(int argc, char **argv)
   History<2> history(directory.file("history.h5"), {"hertz", "", "0"});
   try_to([&]() { history.add_level(LevelRecord(), {}, {}); });
   list_files(directory);
-  limit_file_size(RLIM_INFINITY);
+  std::cout << "room for a file that there is" << std::endl;
+  for (const unsigned int size : {1000u, 2000u})
+    try_to(
+      [&]() { demand_space(directory.file("text.txt"), MPI_COMM_SELF, size); });
+  list_files(directory);
 
+  limit_file_size(RLIM_INFINITY);
   std::cout << "the file is still the first version: ";
   std::ifstream in(directory.file("text.txt"));
   std::cout << in.rdbuf();
