@@ -30,13 +30,14 @@ namespace Friction
       unsigned int format     = checkpoint_format;
       unsigned int dimension  = 0;
       double       mesh       = 0.;
+      unsigned int ids        = 0;
       std::string  parameters = {};
 
       template <class Archive>
       void
       serialize(Archive &archive, const unsigned int /*version*/)
       {
-        archive &format &dimension &mesh &parameters;
+        archive &format &dimension &mesh &ids &parameters;
       }
     };
 
@@ -360,18 +361,30 @@ namespace Friction
 
 
   // The coarse mesh is known to all processes. The numbers of its vertices are
-  // part of the sum, which two different meshes will hardly share.
+  // part of the sum, which two different meshes will hardly share. The second
+  // number is for the physical ids of cells and boundary, which a scene speaks
+  // of.
   template <int dim>
-  double
+  std::pair<double, unsigned int>
   RunOutput<dim>::fingerprint(const Triangulation &triangulation)
   {
-    double sum = 0;
+    double        sum  = 0;
+    std::uint32_t hash = 0;
+    const auto    add  = [&](const unsigned int id) {
+      hash = (hash ^ (id + 1)) * 16777619u + 1;
+    };
     for (const auto &cell : triangulation.cell_iterators_on_level(0))
-      for (const unsigned int v : cell->vertex_indices())
-        for (unsigned int d = 0; d < dim; ++d)
-          sum += (1. + d + dim * (v + 8. * cell->index())) *
-            std::abs(cell->vertex(v)[d]);
-    return sum;
+      {
+        for (const unsigned int v : cell->vertex_indices())
+          for (unsigned int d = 0; d < dim; ++d)
+            sum += (1. + d + dim * (v + 8. * cell->index())) *
+              std::abs(cell->vertex(v)[d]);
+        add(cell->material_id());
+        for (const unsigned int f : cell->face_indices())
+          if (cell->at_boundary(f))
+            add(cell->face(f)->boundary_id());
+      }
+    return {sum, hash};
   }
 
 
@@ -394,7 +407,7 @@ namespace Friction
 
     Header header;
     header.dimension                       = dim;
-    header.mesh                            = fingerprint(triangulation);
+    std::tie(header.mesh, header.ids)      = fingerprint(triangulation);
     header.parameters                      = parameters.text;
     const std::vector<Console::Note> notes = the_console.notes();
 
@@ -476,8 +489,8 @@ namespace Friction
                             "problem, of its times and of how far to refine "
                             "may change: '") +
                        difference + "' has changed.");
-    const double mesh = fingerprint(triangulation);
-    if (std::abs(header.mesh - mesh) > 1e-10 * mesh)
+    const auto [mesh, ids] = fingerprint(triangulation);
+    if (std::abs(header.mesh - mesh) > 1e-10 * mesh || header.ids != ids)
       throw InputError(here + "belongs to another coarse mesh.");
 
     // Would this run have come to that level at all? In later load steps levels

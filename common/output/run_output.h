@@ -154,8 +154,9 @@ namespace Friction
     const std::vector<LevelRecord> &levels() const;
 
   private:
-    /// A number that changes if the coarse mesh does.
-    static double fingerprint(const Triangulation &triangulation);
+    /// Numbers that change if the coarse mesh does.
+    static std::pair<double, unsigned int>
+    fingerprint(const Triangulation &triangulation);
 
     /// What an earlier run has left, if this one began with the coarse mesh.
     void remove_other_run();

@@ -1,6 +1,8 @@
 #include <common/output/warnings.h>
 #include <common/parallel/reductions.h>
 #include <common/printable.h>
+#include <common/scene/rigid_motions.h>
+#include <common/scene/seams.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/numbers.h>
@@ -13,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <map>
 #include <sstream>
 
@@ -36,6 +37,12 @@ namespace Friction
     constexpr double large_distance     = .1;
     constexpr double large_displacement = .1;
 
+    // Of all forces, what a single point may bear.
+    constexpr double large_share = .1;
+
+    // Of a boundary that is not to touch the obstacle, relative to the body.
+    constexpr double visible_depth = 1e-3;
+
 
 
     template <int dim>
@@ -53,10 +60,10 @@ namespace Friction
 
 
     std::string
-    number(const double x)
+    number(const double x, const unsigned int n_digits = 3)
     {
       std::ostringstream text;
-      text.precision(3);
+      text.precision(n_digits);
       text << x;
       return text.str();
     }
@@ -99,42 +106,43 @@ namespace Friction
     // The coarse mesh is known to all processes.
     template <int dim>
     void
-    warn_of_cracks(const parallel::distributed::Triangulation<dim> &mesh,
-                   std::vector<std::string>                        &warnings)
+    warn_of_cuts(const parallel::distributed::Triangulation<dim> &mesh,
+                 std::vector<std::string>                        &warnings)
     {
-      double shortest = std::numeric_limits<double>::max();
-      for (const auto &cell : mesh.cell_iterators_on_level(0))
-        for (unsigned int line = 0; line < cell->n_lines(); ++line)
-          shortest = std::min(shortest, cell->line(line)->diameter());
-      const double unit = 1e-3 * shortest;
-
-      std::map<std::array<std::int64_t, dim>, unsigned int> faces;
-      unsigned int                                          n_pairs = 0;
-      Point<dim>                                            where;
-      for (const auto &cell : mesh.cell_iterators_on_level(0))
-        for (const unsigned int f : cell->face_indices())
-          if (cell->at_boundary(f))
-            {
-              const Point<dim>              center = cell->face(f)->center();
-              std::array<std::int64_t, dim> key;
-              for (unsigned int d = 0; d < dim; ++d)
-                key[d] = std::llround(center[d] / unit);
-              if (++faces[key] == 2)
-                {
-                  ++n_pairs;
-                  where = center;
-                }
-            }
-      if (n_pairs > 0)
+      const auto one_of_them = [](const Seam<dim>   &seam,
+                                  const std::string &lie) {
+        return lie + (seam.n == 1 ? ", at " : ", one of them at ") +
+          describe(seam.where) + ", so that the body is cut there; ";
+      };
+      const std::string faces = dim == 2 ? "edges" : "faces";
+      const Seam<dim>   pairs = faces_on_each_other(mesh);
+      if (pairs.n > 0)
+        warnings.push_back("Warning: " + counted(pairs.n, "pair", "pairs") +
+                           " of boundary " + faces +
+                           one_of_them(pairs,
+                                       pairs.n == 1 ? " lies on each other"
+                                                    : " lie on each other") +
+                           "if it should not be, merge the nodes of the mesh.");
+      const Seam<dim> nodes = nodes_on_faces(mesh);
+      if (nodes.n > 0)
         warnings.push_back(
-          "Warning: " + counted(n_pairs, "pair", "pairs") + " of boundary " +
-          (dim == 2 ? "edges" : "faces") +
-          (n_pairs == 1 ? " lies on each other, at "
-                        : " lie on each other, one of them at ") +
-          describe(where) +
-          ", so that the body is cut there; if it should not be, merge the "
-          "nodes "
-          "of the mesh.");
+          "Warning: " + counted(nodes.n, "node", "nodes") + " of the boundary" +
+          one_of_them(nodes,
+                      (nodes.n == 1 ? " lies" : " lie") +
+                        std::string(" on boundary ") + faces +
+                        " of other cells between their corners") +
+          "if it should not be, mesh the parts together, with the same nodes "
+          "on both sides.");
+
+      if (pairs.n > 0 || nodes.n > 0)
+        return;
+      std::vector<unsigned int> part_of_cell;
+      const unsigned int        n_parts = find_parts(mesh, part_of_cell);
+      if (n_parts > 1)
+        warnings.push_back(
+          "Warning: the body consists of " + std::to_string(n_parts) +
+          " parts that have no " + (dim == 2 ? "edge" : "face") +
+          " in common; nothing keeps one from going through another.");
     }
 
 
@@ -210,6 +218,164 @@ namespace Friction
 
 
 
+    // Of the materials that cells have. Up to a ratio of 0.49 bilinear elements
+    // are too stiff, but not by far. A stiffness has some fifteen digits: those
+    // of a soft part get lost where it is added to that of a stiff one.
+    template <int dim>
+    void
+    warn_of_materials(const Discretization<dim> &discretization,
+                      std::vector<std::string>  &warnings)
+    {
+      constexpr double      locking = .49 + 1e-10, far_apart = 1e10;
+      const Materials<dim> &materials = discretization.scene().materials();
+      double                largest = 0, stiffest = 0, softness = 0;
+      for (const auto &cell : discretization.dof_handler()
+                                .get_triangulation()
+                                .active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            const Material &material =
+              materials.of_regions()[materials.region(cell)];
+            stiffest = std::max(stiffest, material.mu());
+            softness = std::max(softness, 1. / material.mu());
+            if (material.volumetric_strain() == VolumetricStrain::pointwise)
+              largest = std::max(largest,
+                                 material.lambda() /
+                                   (2. * (material.lambda() + material.mu())));
+          }
+      const MPI_Comm comm = discretization.constraints().communicator();
+      largest             = Utilities::MPI::max(largest, comm);
+      stiffest            = Utilities::MPI::max(stiffest, comm);
+      softness            = Utilities::MPI::max(softness, comm);
+      if (largest > locking)
+        warnings.push_back(
+          "Warning: with a Poisson ratio of " + number(largest, 6) +
+          " and pointwise volumetric strains the body is too stiff by far, but "
+          "for very fine meshes; set 'Material/Volumetric strain = mean'" +
+          (materials.is_homogeneous()
+             ? "."
+             : ", or 'E, nu, mean' where it is that of a region."));
+      if (stiffest * softness > far_apart)
+        warnings.push_back(
+          "Warning: a part of the body is " + number(stiffest * softness) +
+          " times as stiff as another one, of which rounding leaves hardly a "
+          "digit, and the certificate does not see it; beyond a factor of 1e6 "
+          "or so a part is as good as rigid.");
+    }
+
+
+
+    // Boundaries with a node in common, of which each wants it somewhere else.
+    // A platen gives way.
+    template <int dim>
+    void
+    warn_of_contradictions(
+      const parallel::distributed::Triangulation<dim> &mesh,
+      const Scene<dim>                                &scene,
+      const double                                     size,
+      std::vector<std::string>                        &warnings)
+    {
+      using Prescribed = std::pair<types::boundary_id, double>;
+      std::map<std::pair<unsigned int, unsigned int>, Prescribed> prescribed;
+      for (const auto &cell : mesh.cell_iterators_on_level(0))
+        for (const unsigned int f : cell->face_indices())
+          for (const auto &condition : scene.dirichlet_conditions())
+            if (cell->at_boundary(f) && condition.platen == nullptr &&
+                cell->face(f)->boundary_id() == condition.boundary_id)
+              for (const unsigned int v : cell->face(f)->vertex_indices())
+                for (unsigned int c = 0; c < dim; ++c)
+                  if (condition.components[c])
+                    {
+                      const Point<dim> p = cell->face(f)->vertex(v);
+                      const double value = condition.displacement->value(p, c);
+                      const auto [entry, is_new] =
+                        prescribed.insert({{cell->face(f)->vertex_index(v), c},
+                                           {condition.boundary_id, value}});
+                      const Prescribed &other = entry->second;
+                      if (std::abs(value - other.second) <=
+                          1e-8 * (std::abs(value) + std::abs(other.second)) +
+                            1e-12 * size)
+                        continue;
+                      warnings.push_back(
+                        "Warning: 'Boundary conditions/Displacement' moves " +
+                        describe(p) + " by " + number(other.second) + " in " +
+                        "xyz"[c] + " direction with boundary " +
+                        std::to_string(other.first) + " and by " +
+                        number(value) + " with boundary " +
+                        std::to_string(condition.boundary_id) +
+                        ", of which one only can be; leave a component "
+                        "'free', or let them agree where they meet.");
+                      return;
+                    }
+    }
+
+
+
+    // The deepest of the nodes that are no contact nodes and yet inside an
+    // obstacle, and its place: undeformed, of those on the contact boundary,
+    // which have been left out; displaced, of those on all of the boundary that
+    // have been outside before. (A body may well hang over the edge of what is
+    // a half space here.) Where something is prescribed, so is where they go. A
+    // length.
+    template <int dim>
+    std::pair<double, Point<dim>>
+    depth_of_other_nodes(const Discretization<dim> &discretization,
+                         const VectorType          *displacement = nullptr)
+    {
+      const Scene<dim>                  &scene = discretization.scene();
+      const NodalConstraints<dim>       &nodes = discretization.constraints();
+      const double                       size  = discretization.body_size();
+      std::map<unsigned int, Point<dim>> points;
+      std::vector<char>                  is_contact(nodes.n_nodes(), 0);
+      for (const auto &cell :
+           discretization.dof_handler().active_cell_iterators())
+        if (!cell->is_artificial())
+          for (const unsigned int f : cell->face_indices())
+            if (cell->at_boundary(f) &&
+                (displacement != nullptr ||
+                 scene.contact_on(cell->face(f)->boundary_id()) != nullptr))
+              for (const unsigned int v : cell->face(f)->vertex_indices())
+                points[nodes.node_of_dof(cell->face(f)->vertex_dof_index(
+                  v, 0))] = cell->face(f)->vertex(v);
+      // Where none of the nodes can touch, other warnings say so.
+      std::vector<unsigned int> n_nodes(scene.contact_conditions().size(), 0);
+      for (const ContactNode<dim> &p : discretization.contact())
+        {
+          is_contact[p.node] = 1;
+          ++n_nodes[p.condition];
+        }
+      for (unsigned int &n : n_nodes)
+        n = Utilities::MPI::sum(n, nodes.communicator());
+
+      const auto depth_in = [](const Obstacle<dim> &obstacle,
+                               const Point<dim>    &p) {
+        const double gap = obstacle.gap(p, obstacle.normal(p));
+        return std::isfinite(gap) ? -gap : 0.;
+      };
+      std::pair<double, Point<dim>> deepest(0., Point<dim>());
+      for (const auto &[node, p] : points)
+        if (!is_contact[node] && nodes.is_free(node) &&
+            node < nodes.n_owned_nodes())
+          for (unsigned int i = 0; i < n_nodes.size(); ++i)
+            if (n_nodes[i] > 0 && can_touch(scene.contact_conditions()[i]))
+              {
+                const Obstacle<dim> &obstacle =
+                  scene.contact_conditions()[i].obstacle;
+                Point<dim> moved = p;
+                if (displacement != nullptr)
+                  for (unsigned int d = 0; d < dim; ++d)
+                    moved[d] += displacement->local_element(dim * node + d);
+                const double depth = depth_in(obstacle, moved);
+                if (depth > deepest.first &&
+                    (displacement == nullptr ||
+                     depth_in(obstacle, p) <= 1e-10 * size))
+                  deepest = {depth, p};
+              }
+      return largest<dim>(nodes.communicator(), deepest.first, deepest.second);
+    }
+
+
+
     // What they add to is the reaction of what holds the boundary. A platen
     // gives way.
     template <int dim>
@@ -228,6 +394,52 @@ namespace Friction
               std::to_string(traction.boundary_id) +
               ", since all of its displacements are prescribed; leave a "
               "component 'free', or the traction out.");
+    }
+
+
+
+    // A body that is loaded in a single point gives way without limit the finer
+    // the mesh is, since its stresses are those of a force on a needle's point.
+    template <int dim>
+    void
+    warn_of_loaded_pins(const Discretization<dim> &discretization,
+                        const VectorType          &displacement,
+                        std::vector<std::string>  &warnings)
+    {
+      const Scene<dim> &scene = discretization.scene();
+      if (scene.pinned_points().empty())
+        return;
+      const NodalConstraints<dim> &constraints = discretization.constraints();
+      VectorType                   force       = discretization.vector();
+      discretization.stiffness().residual(
+        force, discretization.loads(), displacement);
+      double largest_force = 0, all_forces = 0;
+      for (unsigned int i = 0; i < force.locally_owned_size(); ++i)
+        all_forces += std::abs(force.local_element(i));
+      Point<dim> where;
+      for (const auto &cell :
+           discretization.dof_handler().active_cell_iterators())
+        if (cell->is_locally_owned())
+          scene.for_each_pin(
+            cell, [&](const PinnedPoint<dim> &pin, const unsigned int v) {
+              const auto dof = cell->vertex_dof_index(v, pin.component);
+              if (constraints.partitioner()->in_local_range(dof) &&
+                  std::abs(force(dof)) > largest_force)
+                {
+                  largest_force = std::abs(force(dof));
+                  where         = pin.point;
+                }
+            });
+      all_forces = Utilities::MPI::sum(all_forces, constraints.communicator());
+      const auto most =
+        largest<dim>(constraints.communicator(), largest_force, where);
+      if (most.first > large_share * all_forces)
+        warnings.push_back(
+          "Warning: the point that is pinned at " + describe(most.second) +
+          " bears a force of " + number(most.first) +
+          ", under which the body gives way the more the finer the mesh is; "
+          "points can keep a body from drifting away, what bears a load has to "
+          "be a part of the boundary with a displacement.");
     }
   } // namespace
 
@@ -280,7 +492,9 @@ namespace Friction
     if (!about_scene.empty())
       warnings.push_back(about_scene);
     warn_of_useless_tractions(scene, warnings);
-    warn_of_cracks(mesh, warnings);
+    warn_of_materials(discretization, warnings);
+    warn_of_contradictions(mesh, scene, discretization.body_size(), warnings);
+    warn_of_cuts(mesh, warnings);
     const bool is_refined = parameters.refinement.initial_refinements > 0 ||
       parameters.refinement.levels > 0;
     if (parameters.scene.geometry == GeometryKind::mesh_file && is_refined)
@@ -319,6 +533,14 @@ namespace Friction
                          number(deepest.first) +
                          ", and will be pushed out of it; if this is no press "
                          "fit, move one of them.");
+    const auto other = depth_of_other_nodes(discretization);
+    if (other.first > visible_depth * discretization.body_size())
+      warnings.push_back("Warning: a node on the contact boundary lies inside "
+                         "the obstacle, at " +
+                         describe(other.second) + " by " + number(other.first) +
+                         ", and cannot get into contact, since the way out of "
+                         "it leads nowhere the boundary faces; move one of "
+                         "them.");
     return warnings;
   }
 
@@ -398,6 +620,14 @@ namespace Friction
         "Warning: the largest displacement is " + number(g.displacement) +
         " in a body of size " + number(g.size) +
         "; strains and displacements are supposed to be small here.");
+    const auto other = depth_of_other_nodes(discretization, &displacement);
+    if (other.first > visible_depth * g.size)
+      warnings.push_back(
+        "Warning: a node of the boundary that is no contact node has gone "
+        "through the surface of the obstacle, by " +
+        number(other.first) + " at " + describe(other.second) +
+        "; is 'Contact/Boundary id' the right one?");
+    warn_of_loaded_pins(discretization, displacement, warnings);
     const auto &conditions = scene.contact_conditions();
     for (unsigned int i = 0; i < conditions.size(); ++i)
       if (can_touch(conditions[i]))

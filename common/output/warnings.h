@@ -18,13 +18,16 @@ namespace Friction
   /**
    * About the scene, the mesh and the contact boundary, before anything is
    * solved: what Parameters::warnings and Scene::warning() say, and
-   * - boundary faces of the coarse mesh that lie on each other: a crack, or
-   *   nodes that should have been merged;
+   * - where the coarse mesh is cut, see Seam, and parts that it consists of;
    * - tractions where all displacements are prescribed;
+   * - materials for which elements lock, or which are so far apart that
+   *   rounding errors of one are the stiffness of the other;
+   * - displacements of two boundaries that contradict each other in a node;
    * - a contact boundary from a mesh file that is a polygon and stays one,
    *   however fine the mesh;
    * - a contact boundary of which no node faces the obstacle;
-   * - nodes that lie inside the obstacle.
+   * - nodes that lie inside the obstacle, on the contact boundary and on
+   *   others.
    */
   template <int dim>
   std::vector<std::string>
@@ -85,6 +88,8 @@ namespace Friction
    * About a solution:
    * - no cell has the material of a region, see warnings_about_regions();
    * - displacements are not small against the body;
+   * - a boundary that is no contact boundary has gone into the obstacle;
+   * - a pinned point bears a load;
    * and, for each of the contact boundaries,
    * - no node is in contact;
    * - normals of the body are used where they are not those of the obstacle, so

@@ -84,6 +84,31 @@ namespace Friction
   }
 
   /**
+   * Throws InputError if an expression is another number each time that it is
+   * asked for, as those with muParser's 'rand()' are.
+   */
+  inline void
+  check_is_repeatable(const std::string &expression, const std::string &where)
+  {
+    const std::string letters =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+    for (std::size_t i = expression.find("rand"); i != std::string::npos;
+         i             = expression.find("rand", i + 4))
+      {
+                    const bool begins =
+                      i == 0 || letters.find(expression[i - 1]) == std::string::npos;
+                    const std::string word =
+                      expression.substr(i, expression.find_first_not_of(letters, i) - i);
+                    if (begins && (word == "rand" || word == "rand_seed"))
+          throw InputError(where + ": '" + excerpt(expression) +
+                           "' is at random, another number each time that it "
+                                       "is computed, so that there is nothing to solve; "
+                                       "write a function of the place, as "
+                                       "'sin(1e4*x)'.");
+      }
+  }
+
+  /**
    * A function of the coordinates from one expression per component, which may
    * use the given names. With @p with_time and if there is a time, they may use
    * that as well, which set_time() of the function sets. Throws InputError if
@@ -105,6 +130,7 @@ namespace Friction
         check_is_one_value(component, where);
         check_comparisons(component, where);
         expanded.push_back(expressions.expand(component));
+        check_is_repeatable(expanded.back(), where);
       }
 
     // The parser describes errors on the console before it throws. That is

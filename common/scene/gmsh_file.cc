@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <unordered_map>
@@ -331,8 +332,14 @@ namespace Friction
               first == last || dimension < 0 || dimension > 3)
             reader.fail("has a section $PhysicalNames that cannot be "
                         "understood.");
-          file.names[{dimension, text.substr(first + 1, last - first - 1)}] =
-            std::abs(std::max(id, -2000000000));
+          id                     = std::abs(std::max(id, -2000000000));
+          const std::string name = text.substr(first + 1, last - first - 1);
+          const auto        entry =
+            file.names.emplace(std::make_pair(dimension, name), id);
+          if (!entry.second && entry.first->second != id)
+            reader.fail("calls two physical groups '" + excerpt(name) + "', " +
+                        std::to_string(entry.first->second) + " and " +
+                        std::to_string(id) + "; give each a name of its own.");
         }
     }
 
@@ -522,10 +529,18 @@ namespace Friction
   GmshFile
   read_gmsh_file(const std::string &path, const std::string &where)
   {
-    std::ifstream     stream(path, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
     const std::string beginning =
       where + "the mesh file '" + excerpt(path, 300) + "' ";
+    std::error_code no_error;
+    if (std::filesystem::is_directory(path, no_error) ||
+        std::filesystem::is_character_file(path, no_error))
+      throw InputError(beginning + "is no file but a " +
+                       (std::filesystem::is_directory(path, no_error)
+                          ? "directory"
+                          : "device") +
+                       "; correct 'Scene/Mesh file'.");
+    std::ifstream     stream(path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
     if (!stream.is_open() || bytes.empty())
       throw InputError(
         where + (stream.is_open() ? "there is nothing in" : "cannot open") +

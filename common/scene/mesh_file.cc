@@ -556,6 +556,18 @@ namespace Friction
                       const std::set<types::material_id> &used_materials,
                       Triangulation<dim>                 &triangulation) const
   {
+    const auto check_name = [&](const unsigned int id, const auto &ids) {
+      const auto other = ids.find(std::to_string(id));
+      if (other != ids.end() && other->second != static_cast<int>(id))
+        fail("calls its group " + std::to_string(other->second) + " '" +
+             other->first + "', and the scene speaks of " + other->first +
+             ", which might be either; give the group a name that is no "
+             "number.");
+    };
+    for (const types::boundary_id id : used_ids)
+      check_name(id, ids_of_names);
+    for (const types::material_id id : used_materials)
+      check_name(id, ids_of_cell_names);
     for (const auto &[id, inner] : inner_faces)
       if (used_ids.count(id) > 0 && !inner.is_whole)
         fail("has a group with the physical id " + std::to_string(id) +
