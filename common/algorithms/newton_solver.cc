@@ -153,12 +153,6 @@ namespace Friction
   NewtonSolver<dim>::precondition(VectorType &v, const VectorType &r)
   {
     smoothed = 0.;
-    if (strip.is_everything())
-      {
-        strip.add_solution(smoothed, r);
-        v = smoothed;
-        return;
-      }
     relaxation.run(smoothed, r, {smoothing_steps, false}, &defect);
     if (!strip.is_empty())
       {

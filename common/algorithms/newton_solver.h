@@ -29,8 +29,7 @@ namespace Friction
    * only, as an operator of order zero, on waves of all lengths alike. The
    * cycle leaves it to GMRES, which would take the more iterations the larger
    * the coefficient of friction is. So a strip along sliding nodes is solved
-   * with all terms before the correction and after it, see ContactStrip. If the
-   * strip is the whole body, there is nothing else to be done.
+   * with all terms before the correction and after it, see ContactStrip.
    *
    * Linear problems are solved no more accurately than the step deserves
    * (Eisenstat and Walker 1996). There is no energy that would decrease. What
@@ -44,7 +43,7 @@ namespace Friction
   public:
     /// Layers of the strip along sliding nodes. In three dimensions factors of
     /// a deep one cost more than they save.
-    static constexpr unsigned int usual_layers = dim == 2 ? 8 : 2;
+    static constexpr unsigned int n_layers = dim == 2 ? 8 : 2;
 
     /** References are kept. Collective.
      * @param smoother         for relaxation of the leaf mesh.
@@ -56,13 +55,6 @@ namespace Friction
                  Levels<dim>                 &levels,
                  TruncatedCorrection<dim>    &correction,
                  const unsigned int           smoothing_steps);
-
-    /** From now on the strip is the whole body. */
-    void
-    take_whole_body()
-    {
-      n_layers = ContactStrip<dim>::whole_body;
-    }
 
     /**
      * Solves. Collective.
@@ -99,8 +91,7 @@ namespace Friction
     ContactStrip<dim>               strip;
     std::vector<SemismoothLaw<dim>> laws;
     std::vector<NodeValue<dim>>     slopes; // F e, of each contact node
-    unsigned int                    n_layers = usual_layers;
-    unsigned int                    steps    = 0;
+    unsigned int                    steps = 0;
 
     // f - A u; and vectors of work, an image under A among them.
     VectorType residual, image, defect, smoothed, correction_part;

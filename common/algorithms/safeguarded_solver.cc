@@ -28,13 +28,6 @@ namespace Friction
     // If these take that many cycles, the next mesh does not begin with them.
     constexpr unsigned int jump_patience = 10, too_many_for_the_next = 100;
 
-    // Up to this number of unknowns the whole matrix is factorised for Newton's
-    // method, in two dimensions, if nothing else is left. A step takes as long
-    // as a hundred cycles and more then; so it is what a mesh begins with on
-    // small meshes only.
-    constexpr types::global_dof_index largest_factorised       = 20000,
-                                      largest_factorised_first = 3000;
-
 
 
     // A user who chooses other parts wants to see them work.
@@ -141,16 +134,6 @@ namespace Friction
 
 
 
-  template <int dim>
-  bool
-  SafeguardedSolver<dim>::is_factorised() const
-  {
-    return dim == 2 && !much_friction() &&
-      problem.constraints.partitioner()->size() <= largest_factorised;
-  }
-
-
-
   // What all attempts after the first have in common. They end by increments,
   // and not by an estimate of the error.
   template <int dim>
@@ -167,21 +150,60 @@ namespace Friction
 
 
 
+  template <int dim>
+  bool
+  SafeguardedSolver<dim>::materials_do_jump()
+  {
+    if (!jumps)
+      jumps =
+        materials_jump(problem.stiffness.blocks(), problem.communicator());
+    return *jumps;
+  }
+
+
+
   // In two dimensions relaxation of lines is all that stretched cells need.
   template <int dim>
   bool
   SafeguardedSolver<dim>::coarse_cells_may_be_to_blame()
   {
-    if (!has_defaults(settings) || much_friction() ||
-        levels.hierarchy().n_levels() == 1)
-      return false;
     constexpr double mostly = .5;
-    if (!hard_for_coarse_cells)
-      hard_for_coarse_cells =
-        (dim == 3 &&
-         levels.share_in_lines(levels.n_correction_levels()) >= mostly) ||
-        materials_jump(problem.stiffness.blocks(), problem.communicator());
-    return *hard_for_coarse_cells;
+    return has_defaults(settings) && !much_friction() &&
+      levels.hierarchy().n_levels() > 1 &&
+      ((dim == 3 &&
+        levels.share_in_lines(levels.n_correction_levels()) >= mostly) ||
+       materials_do_jump());
+  }
+
+
+
+  template <int dim>
+  bool
+  SafeguardedSolver<dim>::contact_nodes_alone_are_better(
+    const bool others_have_failed)
+  {
+    if (!settings.condensation || !has_defaults(settings) || much_friction() ||
+        !(others_have_failed || settings.nearly_incompressible ||
+          materials_do_jump()))
+      return false;
+    if (!condensed)
+      condensed = std::make_unique<CondensedSolver<dim>>(
+        problem, node_positions(levels.dof_handler(), problem.constraints));
+    return condensed->is_worthwhile(others_have_failed);
+  }
+
+
+
+  template <int dim>
+  SolverReport
+  SafeguardedSolver<dim>::contact_nodes_alone(const Search &search)
+  {
+    return condensed->solve(
+      iteration.functional(),
+      Iterate(search.u, search.state, problem.has_coulomb_friction()),
+      settings,
+      later_settings(search.accuracy),
+      search.progress);
   }
 
 
@@ -274,8 +296,6 @@ namespace Friction
                                               levels,
                                               *truncated,
                                               settings.smoothing_steps);
-        if (is_factorised())
-          newton->take_whole_body();
       }
     SolverReport          report;
     const PhaseCosts      before = phase_costs(problem.communicator());
@@ -451,16 +471,36 @@ namespace Friction
     constexpr unsigned int any_number =
       std::numeric_limits<unsigned int>::max();
 
-    // What has solved the mesh before is likely to solve this one.
     const Method begin_with = next_method;
-    if (begin_with == Method::newton &&
-        (much_friction() ||
-         (is_factorised() && u.size() <= largest_factorised_first)))
+
+    bool       is_condensed            = false;
+    const auto try_contact_nodes_alone = [&]() {
+      const bool others_have_failed =
+        !all.attempts.empty() || begin_with == Method::contact_nodes;
+      if (report.converged || is_condensed ||
+          !contact_nodes_alone_are_better(others_have_failed) ||
+          !budget->begin_attempt())
+        return;
+      start_anew();
+      is_condensed = true;
+      attempt(
+        (coulomb ? name : "the iteration") + " on contact nodes alone",
+        [&](const Search &search) { return contact_nodes_alone(search); });
+      if (report.converged && others_have_failed)
+        next_method = Method::contact_nodes;
+    };
+
+    // Here it is known beforehand what coarse levels are worth.
+    try_contact_nodes_alone();
+
+    // What has solved the mesh before is likely to solve this one.
+    if (begin_with == Method::newton && much_friction())
       try_newton();
     else if (begin_with == Method::aggregates && has_defaults(settings) &&
              !much_friction())
       try_aggregates();
-    else if (begin_with == Method::algebraic)
+    else if (begin_with == Method::algebraic ||
+             (begin_with == Method::contact_nodes && !is_condensed))
       {
         // Much dearer, so that others may try once what they can do on this
         // mesh.
@@ -499,8 +539,8 @@ namespace Friction
       settings.algorithm == Algorithm::fixed_point;
     if (may_aggregate)
       try_aggregates();
-    if (is_factorised() && !outer_failure)
-      try_newton();
+    if (!outer_failure)
+      try_contact_nodes_alone();
     // It has not had much time.
     if (!report.converged && may_aggregate && budget->begin_attempt())
       try_algorithm(patience, any_number);

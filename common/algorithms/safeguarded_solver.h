@@ -1,6 +1,7 @@
 #ifndef friction_algorithms_safeguarded_solver_h
 #define friction_algorithms_safeguarded_solver_h
 
+#include <common/algorithms/condensed_solver.h>
 #include <common/algorithms/coulomb_solver.h>
 #include <common/algorithms/newton_solver.h>
 #include <common/iteration/aggregate_correction.h>
@@ -17,31 +18,36 @@ namespace Friction
    * Solves the discrete contact problem by CoulombSolver, and if that gets
    * nowhere, by what may succeed:
    *
-   * 1. the algorithm of the settings, by default Algorithm 3. With much
+   * 1. the algorithm of the settings on contact nodes alone, see
+   *    CondensedSolver, where coarse functions are known not to help: materials
+   *    jump, or are nearly incompressible. There has to be not much friction,
+   *    and so few unknowns that this takes no longer than cycles;
+   * 2. the algorithm of the settings, by default Algorithm 3. With much
    *    friction, or where materials jump, it has to show soon that it gets
    *    somewhere;
-   * 2. the algorithm of the settings with AggregateCorrection, where there is
+   * 3. the algorithm of the settings with AggregateCorrection, where there is
    *    not much friction and materials jump, or most nodes of a body in three
    *    dimensions are in lines of strong couplings: coarse functions do not
    *    follow borders of materials within coarse cells;
-   * 3. where there is not much friction, but the whole matrix can be factorised
-   *    soon, Newton's method with these factors from the initial guess, see
-   *    NewtonSolver; and after it, if 2. has left it little time, 1. once more;
-   * 4. the algorithm of the settings with AlgebraicCorrection, where there is
+   * 4. where there is not much friction, contact nodes alone, if that takes no
+   *    longer than some hundreds of cycles, whatever the material; and after
+   *    it, if 3. has left it little time, 2. once more;
+   * 5. the algorithm of the settings with AlgebraicCorrection, where there is
    *    not much friction: then coarse levels are the trouble, for example
    *    because cells are short in two of three directions;
-   * 5. Newton's method, if it has not been tried yet: where there is much
+   * 6. Newton's method, if it has not been tried yet: where there is much
    *    friction, the law is the trouble;
-   * 6. continuation by the same method: first the problem with less friction,
+   * 7. continuation by the same method: first the problem with less friction,
    *    and its solution as initial guess for more, until all friction is there;
-   * 7. algebraic corrections, if they have not been tried yet;
-   * 8. Algorithm 2 with half of each change of the normal forces, and with
+   * 8. algebraic corrections, if they have not been tried yet;
+   * 9. Algorithm 2 with half of each change of the normal forces, and with
    *    mixing, see MixedFixedPoint. Each of its problems, with given normal
    *    forces, is convex, which makes it slow and reliable.
    *
    * The discrete problem has a solution whatever the coefficient of friction,
-   * if some admissible displacement has no tangential part at the contact
-   * nodes: then the map of normal forces to those of the solution with these
+   * if displacements are prescribed that leave the body no rigid motion, and
+   * some admissible displacement has no tangential part at the contact nodes:
+   * then the map of normal forces to those of the solution with these
    * forces given is continuous and bounded, and Brouwer's theorem applies. But
    * it may have several, and a solution that is not found is reported as what
    * it is, by SolverReport::converged.
@@ -50,14 +56,14 @@ namespace Friction
    * SolverSettings::total_cycles cycles at most, but for one in each of them,
    * and each attempt half of those that are left, continuation and the last one
    * all, so that a problem without hope, or a force that cannot be reached,
-   * comes to an end. Without Coulomb's friction the problem is convex, and 6
-   * and 8 are left out.
+   * comes to an end. Without Coulomb's friction the problem is convex, and 7
+   * and 9 are left out.
    *
    * What has solved one problem is tried first on the next one, in the next
-   * call of solve() and, by SolverReport::next_method, on the next mesh, 2.
-   * before 4. if that has not failed on the same mesh; but Newton's method only
-   * with much friction, or up to 3000 unknowns in two dimensions, where factors
-   * of the whole matrix cost next to nothing.
+   * call of solve() and, by SolverReport::next_method, on the next mesh, 3.
+   * before 5. if that has not failed on the same mesh; but Newton's method only
+   * with much friction. If contact nodes alone have, and would take too long on
+   * the next mesh, 5. follows there at once.
    */
   template <int dim>
   class SafeguardedSolver
@@ -105,9 +111,9 @@ namespace Friction
     Method next_method;
 
     // On this mesh, which is that of all calls of solve(): whether materials
-    // jump or cells are stretched, once that has been asked, and whether levels
-    // made of the matrix have failed.
-    std::optional<bool> hard_for_coarse_cells;
+    // jump, once that has been asked, and whether levels made of the matrix
+    // have failed.
+    std::optional<bool> jumps;
     bool                aggregates_have_failed = false;
 
     // Of all calls of solve().
@@ -119,6 +125,7 @@ namespace Friction
     std::unique_ptr<AggregateCorrection<dim>> aggregates;
     std::unique_ptr<AlgebraicCorrection<dim>> algebraic;
     std::unique_ptr<NewtonSolver<dim>>        newton;
+    std::unique_ptr<CondensedSolver<dim>>     condensed;
     LineSearch<dim>                           whole_steps;
 
     // What is being solved.
@@ -133,12 +140,15 @@ namespace Friction
     // The law is to blame if something fails.
     bool much_friction() const;
 
-    // Newton's method factorises the whole matrix: coarse levels are to blame.
-    bool is_factorised() const;
-
     CoulombSettings later_settings(const double accuracy) const;
 
+    bool materials_do_jump();
+
     bool coarse_cells_may_be_to_blame();
+
+    bool contact_nodes_alone_are_better(const bool others_have_failed);
+
+    SolverReport contact_nodes_alone(const Search &search);
 
     SolverReport aggregate_corrections(const Search &search);
 

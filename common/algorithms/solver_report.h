@@ -13,10 +13,11 @@ namespace Friction
   /** What a mesh is solved with, as far as that is known beforehand. */
   enum class Method : unsigned int
   {
-    algorithm, ///< that of the settings
-    newton,    ///< NewtonSolver
-    algebraic, ///< that of the settings with AlgebraicCorrection
-    aggregates ///< that of the settings with AggregateCorrection
+    algorithm,    ///< that of the settings
+    newton,       ///< NewtonSolver
+    algebraic,    ///< that of the settings with AlgebraicCorrection
+    aggregates,   ///< that of the settings with AggregateCorrection
+    contact_nodes ///< that of the settings on contact nodes alone
   };
 
 

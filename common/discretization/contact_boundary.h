@@ -62,6 +62,21 @@ namespace Friction
     {
       return frame[0];
     }
+
+    /** For other processes. */
+    template <typename Archive>
+    void
+    serialize(Archive &archive, const unsigned int)
+    {
+      archive &node &gap &measure &friction_share &condition &bound_is_given
+        &n_free_tangents;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          archive &point[d] & slip_origin[d];
+          for (Tensor<1, dim> &vector : frame)
+            archive &vector[d];
+        }
+    }
   };
 
 
@@ -99,6 +114,15 @@ namespace Friction
                     const AffineConstraints<double> &hanging,
                     const NodalConstraints<dim>     &constraints,
                     const Scene<dim>                &scene);
+
+    /** Nodes that are known already, for which @p like says which law and
+     * coefficient hold. */
+    ContactBoundary(const std::vector<ContactNode<dim>> &nodes,
+                    const ContactBoundary               &like)
+      : nodes(nodes)
+      , coefficient(like.coefficient)
+      , law(like.law)
+    {}
 
     /** From now on friction counts slip from the tangential part of @p u, the
      * displacement that an earlier load step has ended with. */

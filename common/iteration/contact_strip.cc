@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace Friction
 {
@@ -52,8 +53,6 @@ namespace Friction
 
     const MPI_Comm comm = problem.communicator();
     empty_everywhere    = !true_on_any_process(factors != nullptr, comm);
-    everything          = n_layers == whole_body && !empty_everywhere &&
-      Utilities::MPI::n_mpi_processes(comm) == 1;
   }
 
 
@@ -74,23 +73,17 @@ namespace Friction
           nodes.push_back(node);
         }
     };
-    if (n_layers == whole_body)
-      for (unsigned int i = 0; i < A.n_rows(); ++i)
-        add(i);
-    else
-      {
-        for (unsigned int p = 0; p < slopes.size(); ++p)
-          if (slopes[p] != NodeValue<dim>{})
-            add(problem.contact[p].node);
-        unsigned int done = 0;
-        for (unsigned int layer = 0; layer < n_layers; ++layer)
-          for (const unsigned int end = nodes.size(); done < end; ++done)
-            for (std::size_t e = A.row_begin(nodes[done]);
-                 e < A.row_end(nodes[done]);
-                 ++e)
-              if (A.column(e) < A.n_rows())
-                add(A.column(e));
-      }
+    for (unsigned int p = 0; p < slopes.size(); ++p)
+      if (slopes[p] != NodeValue<dim>{})
+        add(problem.contact[p].node);
+    unsigned int done = 0;
+    for (unsigned int layer = 0; layer < n_layers; ++layer)
+      for (const unsigned int end = nodes.size(); done < end; ++done)
+        for (std::size_t e = A.row_begin(nodes[done]);
+             e < A.row_end(nodes[done]);
+             ++e)
+          if (A.column(e) < A.n_rows())
+            add(A.column(e));
   }
 
 

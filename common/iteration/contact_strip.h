@@ -9,7 +9,6 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <array>
-#include <limits>
 #include <memory>
 #include <vector>
 
@@ -35,10 +34,6 @@ namespace Friction
   class ContactStrip
   {
   public:
-    /// All nodes, instead of a number of layers.
-    static constexpr unsigned int whole_body =
-      std::numeric_limits<unsigned int>::max();
-
     /** @p problem is kept by reference. */
     explicit ContactStrip(const DiscreteProblem<dim> &problem);
 
@@ -63,13 +58,6 @@ namespace Friction
       return empty_everywhere;
     }
 
-    /** What it solves for is everything there is. */
-    bool
-    is_everything() const
-    {
-      return everything;
-    }
-
     /** Adds the solution for a truncated defect to v. */
     void add_solution(VectorType &v, const VectorType &defect);
 
@@ -79,7 +67,7 @@ namespace Friction
   private:
     const DiscreteProblem<dim> &problem;
     const Truncation<dim>      *current          = nullptr;
-    bool                        empty_everywhere = true, everything = false;
+    bool                        empty_everywhere = true;
 
     // Those of the strip, where a node is among them, and where it is among the
     // contact nodes; `outside` if it is not.

@@ -14,10 +14,11 @@ namespace Friction
    * $T(A+\omega'')T\,v=r$. It need not solve it; what it may do to the energy,
    * the fifth part finds out.
    *
-   * There are four of them: TruncatedCorrection, one multigrid cycle;
+   * There are five of them: TruncatedCorrection, one multigrid cycle;
    * MonotoneCorrection, a cycle that observes bounds; AggregateCorrection, a
    * cycle and another one over levels that are made of the matrix;
-   * AlgebraicCorrection, a solution on the leaf mesh without any levels.
+   * AlgebraicCorrection, a solution on the leaf mesh without any levels;
+   * DenseCorrection, the same of a dense matrix.
    */
   template <int dim>
   class Correction

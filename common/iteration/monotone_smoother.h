@@ -21,7 +21,8 @@ namespace Friction
    * by a dim x dim solve away from contact, by the local problem (6.15) on the
    * contact boundary. Each step lowers the energy or leaves it, and each
    * iterate is admissible; that is what makes the method monotone, and globally
-   * convergent for given normal forces, whatever the coarse levels contribute.
+   * convergent for given normal forces, whatever the coarse levels contribute,
+   * if the stiffness matrix is positive definite.
    *
    * Nodes are taken by ascending number, in chunks of which the ordinary nodes
    * come first and the contact nodes last, so that the long loop over the

@@ -56,6 +56,27 @@ namespace Friction
 
 
 
+  template <int dim>
+  NodalConstraints<dim>::NodalConstraints(
+    const std::vector<char> &is_prescribed, const std::vector<double> &u)
+    : leaf_partitioner(
+        std::make_shared<Utilities::MPI::Partitioner>(is_prescribed.size()))
+    , node_numbering(
+        NodeDistribution(is_prescribed.size() / dim,
+                         std::make_shared<SolverCommunicator>(MPI_COMM_SELF)))
+    , flags(is_prescribed.size() / dim, 0)
+    , values(leaf_partitioner)
+  {
+    for (unsigned int i = 0; i < is_prescribed.size(); ++i)
+      if (is_prescribed[i])
+        {
+          flags[i / dim] |= (1u << (i % dim));
+          values.local_element(i) = u[i];
+        }
+  }
+
+
+
   // The owner of a node knows all about it; processes that have it as a
   // ghost may not.
   template <int dim>

@@ -50,6 +50,14 @@ namespace Friction
                      const AffineConstraints<double> &dirichlet,
                      const IndexSet                  &coupled = IndexSet());
 
+    /**
+     * Nodes that are all on this process, and do not hang.
+     * @param is_prescribed  of each degree of freedom, whether it is given.
+     * @param u              has the values of those that are.
+     */
+    NodalConstraints(const std::vector<char>   &is_prescribed,
+                     const std::vector<double> &u);
+
     /** The distribution of degrees of freedom over processes, with ghosts. */
     const std::shared_ptr<const Utilities::MPI::Partitioner> &
     partitioner() const

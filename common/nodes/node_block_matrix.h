@@ -89,6 +89,13 @@ namespace Friction
       return pattern == nullptr ? 0 : pattern->columns.size();
     }
 
+    /** Which blocks there are. */
+    const NodePattern &
+    sparsity() const
+    {
+      return *pattern;
+    }
+
     /** The position of the first block of a row, which is the diagonal one. */
     std::size_t
     row_begin(const unsigned int row) const

@@ -15,7 +15,7 @@ namespace Friction
     leading_sweeps, ///< relaxation on the leaf mesh
     coarse_sweeps,  ///< relaxation on the levels
     transfer,       ///< between the levels, and between them and the leaf mesh
-    coarsest,       ///< the problem of the coarsest level
+    coarsest,       ///< the problem of the coarsest level, or of contact nodes
     matrix_updates, ///< linearisation, and level matrices brought up to date
     line_search,    ///< recombination, products with the matrix, line search
     other           ///< everything else: norms, energy, certificate

@@ -443,9 +443,10 @@ namespace Friction
       {"Solver",
        "Certificate tolerance",
        "1e-6",
-       positive,
+       make(Patterns::Double(1e-300, .1)),
        "By how much, relative to the peak contact pressure, a valid solution "
-       "may violate the discrete law at any node; at least 0.01 with the inner "
+       "may violate the discrete law at any node, 0.1 at most; at least 0.01 "
+       "with the inner "
        "tolerance 'discretisation'."},
       {"Solver",
        "Maximum cycles",
@@ -495,6 +496,13 @@ namespace Friction
        "others: shorter steps, levels made of the matrix, algebraic "
        "corrections, Algorithm 2 with mixed "
        "normal forces, or with small steps of them, less friction first."},
+      {"Solver",
+       "Condensation",
+       "true",
+       flag,
+       "Whether the safeguards solve small bodies on contact nodes alone where "
+       "materials jump or are nearly incompressible, or where others have "
+       "failed: all other nodes are eliminated first, once and for all."},
 
       {"Output",
        "Directory",

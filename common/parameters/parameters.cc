@@ -523,7 +523,8 @@ namespace Friction
         for (const std::string name :
              {"Outer tolerance", "Maximum outer iterations"})
           only_with("Solver/" + name, "Solver/Algorithm", {"fixed point"});
-      only_with("Solver/Total cycles", "Solver/Safeguards", yes);
+      for (const std::string name : {"Total cycles", "Condensation"})
+        only_with("Solver/" + name, "Solver/Safeguards", yes);
       only_with("Solver/Recombined steps",
                 "Solver/Coarse correction",
                 {"truncated", "aggregates", "algebraic"});
@@ -765,6 +766,8 @@ namespace Friction
       unsigned int sweeps = enough_smoothing_steps(parameters.material);
       for (const auto &region : parameters.regions)
         sweeps = std::max(sweeps, enough_smoothing_steps(region.material));
+      solver.nearly_incompressible =
+        sweeps > SolverSettings().coarse_smoothing_steps;
       solver.smoothing_steps = values.steps("Solver/Smoothing steps", sweeps);
       solver.coarse_smoothing_steps =
         values.steps("Solver/Coarse smoothing steps", std::max(6u, sweeps));
@@ -781,7 +784,8 @@ namespace Friction
       solver.outer_damping       = values.number("Solver/Outer damping");
       solver.mixed_outer_iterations =
         values.integer("Solver/Mixed outer iterations");
-      solver.safeguards = values.flag("Solver/Safeguards");
+      solver.safeguards   = values.flag("Solver/Safeguards");
+      solver.condensation = values.flag("Solver/Condensation");
     }
 
     {

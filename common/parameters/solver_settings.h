@@ -134,6 +134,14 @@ namespace Friction
     /// Whether to try other iterations where one is getting nowhere; see
     /// SafeguardedSolver.
     bool safeguards = true;
+
+    /// Whether these may leave levels alone, where they know a body for which
+    /// factors are better, or others have failed; see CondensedSolver.
+    bool condensation = true;
+
+    /// Whether the volume of the body, or of a part of it, hardly changes: more
+    /// sweeps are wanted then than the levels have otherwise.
+    bool nearly_incompressible = false;
   };
 
   /** How many smoothing steps a body of this material needs, which is what

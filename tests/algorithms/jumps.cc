@@ -1,7 +1,8 @@
 // Stiff parts that no coarse cell knows of, a million times stiffer than what
 // is around them: Algorithm 3 with levels of the mesh is given up on a coarse
 // mesh, and with levels made of the matrix it takes a few cycles on all meshes
-// from then on, one attempt each. Its solution is that of AlgebraicCorrection,
+// from then on, one attempt each (bodies as small as these would otherwise be
+// solved on contact nodes alone). Its solution is that of AlgebraicCorrection,
 // which has no levels at all. Groups of nodes end between processes, so that
 // several of them need more cycles.
 
@@ -24,6 +25,7 @@ namespace
             std::string("Refinement/Initial refinements=") +
               (dim == 2 ? "3" : "1"),
             std::string("Refinement/Levels=") + (dim == 2 ? "3" : "2"),
+            "Solver/Condensation=false",
             "Material/Regions=where " + stiff + ": 1e6*E, nu"};
   }
 

@@ -118,7 +118,8 @@ namespace
 
 
   // Cells that are a hundred times shorter in two directions than in the third:
-  // there lines are of no help.
+  // there lines are of no help. The body is small enough for its contact nodes
+  // alone; without that, algebraic corrections have to do it.
   void
   test_long_cells(const FrictionLaw law)
   {
@@ -132,12 +133,18 @@ namespace
     p.refinement.initial_refinements = 3;
     VectorType         u, v;
     ContactState       state(0, false), other(0, false);
-    const SolverReport report = solve<3>(p, u, state);
-    check(report.converged, "it is solved");
-    std::cout << report.attempts.size() << " attempts, the last one: "
-              << (report.attempts.empty() ? "" : report.attempts.back().name)
-              << std::endl;
-    check(report.cycles.size() <= 80, "and soon");
+    const SolverReport report         = solve<3>(p, u, state);
+    const auto         is_solved_soon = [](const SolverReport &report) {
+      check(report.converged && report.cycles.size() <= 80,
+            "it is solved soon");
+      std::cout << report.attempts.size() << " attempts, the last one: "
+                << (report.attempts.empty() ? "" : report.attempts.back().name)
+                << std::endl;
+    };
+    is_solved_soon(report);
+    p.solver.condensation = false;
+    is_solved_soon(solve<3>(p, v, other));
+    check_below(distance(u, v), 1e-6, "displacements agree");
 
     // The same by patience.
     p.solver.safeguards       = false;

@@ -160,15 +160,15 @@ namespace
       }
     check_below(wrong, 1e-10, "equations hold in the strip");
 
+    const unsigned int more_layers_than_nodes = 1000;
     strip.update(
-      step.truncation.truncation(), step.slopes, ContactStrip<dim>::whole_body);
-    check(strip.is_everything(), "the whole body is everything");
+      step.truncation.truncation(), step.slopes, more_layers_than_nodes);
     VectorType v = problem.leaf_vector();
     strip.add_solution(v, defect);
     const Eigen::VectorXd solution = to_eigen(v);
     check_below((r - step.matrix * solution).norm() / r.norm(),
                 1e-10,
-                "and there all equations hold");
+                "in a strip that is the whole body all equations hold");
 
     const MonotoneSmoother<dim> smoother(discrete);
     LeafRelaxation<dim>         relaxation(discrete, smoother);

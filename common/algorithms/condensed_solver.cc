@@ -1,0 +1,502 @@
+#include <common/algorithms/condensed_solver.h>
+#include <common/iteration/dense_correction.h>
+#include <common/parallel/reductions.h>
+#include <common/parallel/run_clock.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace Friction
+{
+  namespace
+  {
+    // Multiplications per unknown with which factorising takes about as long as
+    // two dozen multigrid cycles, of a body with such a material, and with
+    // which it takes as long as some hundreds; and unknowns up to which it is
+    // worth while to count them.
+    template <int dim>
+    constexpr double cheap = (dim == 2 ? 6000. : 60000.);
+
+    template <int dim>
+    constexpr double affordable = 10 * cheap<dim>;
+
+    template <int dim>
+    constexpr types::global_dof_index largest = (dim == 2 ? 60000 : 20000);
+
+    // The certificate of a solution, as a part of the tolerance, with which
+    // nothing remains to be done; and how often to correct rounding errors of
+    // the factors.
+    constexpr double       certain = 1e-3;
+    constexpr unsigned int passes  = 3;
+
+
+
+    bool
+    is_alone(const MPI_Comm communicator)
+    {
+      return Utilities::MPI::n_mpi_processes(communicator) == 1;
+    }
+  } // namespace
+
+
+
+  // The contact problem that is left when all other nodes are condensed.
+  template <int dim>
+  struct CondensedSolver<dim>::Small
+  {
+    NodalConstraints<dim> constraints;
+    LeafOperator<dim>     stiffness;
+    VectorType            forces, u;
+    ContactBoundary<dim>  contact;
+    std::vector<double>   face_measures;
+    DiscreteProblem<dim>  problem;
+
+    Small(const std::vector<char>             &is_prescribed,
+          const std::vector<double>           &values,
+          NodeBlockMatrix<dim>               &&matrix,
+          const std::vector<ContactNode<dim>> &nodes,
+          const DiscreteProblem<dim>          &whole)
+      : constraints(is_prescribed, values)
+      , stiffness(std::move(matrix), constraints)
+      , forces(constraints.partitioner())
+      , u(constraints.partitioner())
+      , contact(nodes, whole.contact)
+      , face_measures(values.size() / dim, 0.)
+      , problem{stiffness,
+                forces,
+                constraints,
+                contact,
+                face_measures,
+                whole.friction_law,
+                whole.friction_coefficient}
+    {
+      std::copy(values.begin(), values.end(), u.begin());
+    }
+  };
+
+
+
+  template <int dim>
+  CondensedSolver<dim>::CondensedSolver(
+    const DiscreteProblem<dim>    &problem,
+    const std::vector<Point<dim>> &own_positions)
+    : problem(problem)
+    , matrix(&problem.stiffness.blocks())
+  {
+    if (problem.constraints.partitioner()->size() > largest<dim>)
+      return;
+    const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
+    gather_nodes(own_positions);
+    if (!is_alone(problem.communicator()))
+      gather_matrix();
+    is_absent.resize(matrix->n_rows());
+    for (unsigned int i = 0; i < is_absent.size(); ++i)
+      is_absent[i] = (matrix->row_begin(i) == matrix->row_end(i) ||
+                      std::all_of(is_held.begin() + dim * i,
+                                  is_held.begin() + dim * (i + 1),
+                                  [](const char held) { return held; }));
+    tree = std::make_unique<EliminationTree>(
+      matrix->sparsity(), positions, is_contact, is_absent);
+    if (!is_worthwhile(true))
+      {
+        tree.reset();
+        gathered = NodeBlockMatrix<dim>();
+      }
+  }
+
+
+
+  template <int dim>
+  CondensedSolver<dim>::~CondensedSolver() = default;
+
+
+
+  // Of all processes, in the order of their ranks.
+  template <int dim>
+  template <typename Value>
+  std::vector<Value>
+  CondensedSolver<dim>::gather(const std::vector<Value> &own) const
+  {
+    if (is_alone(problem.communicator()))
+      return own;
+    std::vector<Value> all;
+    for (const std::vector<Value> &part :
+         Utilities::MPI::all_gather(problem.communicator(), own))
+      all.insert(all.end(), part.begin(), part.end());
+    return all;
+  }
+
+
+
+  template <int dim>
+  void
+  CondensedSolver<dim>::gather_nodes(
+    const std::vector<Point<dim>> &own_positions)
+  {
+    const NodalConstraints<dim>       &constraints = problem.constraints;
+    const unsigned int                 n = constraints.n_owned_nodes();
+    std::vector<std::array<double, 3>> places(n);
+    std::vector<char>                  held(dim * n), contact(n, 0);
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        places[i].fill(0.);
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            places[i][d]      = own_positions[i][d];
+            held[dim * i + d] = constraints.is_prescribed(i, d);
+          }
+      }
+    for (const ContactNode<dim> &p : problem.contact)
+      contact[p.node] = 1;
+    positions  = gather(places);
+    is_held    = gather(held);
+    is_contact = gather(contact);
+
+    number.resize(positions.size());
+    for (unsigned int i = 0, k = 0; i < number.size(); ++i)
+      number[i] = is_contact[i] ? k++ : 0;
+  }
+
+
+
+  template <int dim>
+  void
+  CondensedSolver<dim>::gather_matrix()
+  {
+    const NodeBlockMatrix<dim> &own   = problem.stiffness.blocks();
+    const NodeNumbering        &nodes = problem.constraints.numbering();
+    std::vector<unsigned int>   lengths, columns;
+    std::vector<double>         values;
+    for (unsigned int i = 0; i < own.n_rows(); ++i)
+      {
+        lengths.push_back(own.row_end(i) - own.row_begin(i));
+        for (std::size_t e = own.row_begin(i); e < own.row_end(i); ++e)
+          {
+            columns.push_back(nodes.global(own.column(e)));
+            values.insert(values.end(), own.block(e), own.block(e) + dim * dim);
+          }
+      }
+    lengths = gather(lengths);
+    columns = gather(columns);
+    values  = gather(values);
+
+    auto                      pattern = std::make_shared<NodePattern>();
+    std::vector<unsigned int> row;
+    std::size_t               first = 0;
+    for (const unsigned int length : lengths)
+      {
+        row.assign(columns.begin() + first, columns.begin() + first + length);
+        pattern->append_row(row);
+        first += length;
+      }
+    gathered       = NodeBlockMatrix<dim>(pattern);
+    std::size_t at = 0;
+    for (unsigned int i = 0; i < lengths.size(); ++i)
+      for (unsigned int k = 0; k < lengths[i]; ++k, ++at)
+        std::copy_n(values.begin() + dim * dim * at,
+                    dim * dim,
+                    gathered.block(gathered.find(i, columns[at])));
+    matrix = &gathered;
+  }
+
+
+
+  template <int dim>
+  bool
+  CondensedSolver<dim>::is_worthwhile(const bool others_have_failed) const
+  {
+    if (!tree || has_failed)
+      return false;
+    const double n = dim * tree->fronts().back().nodes.size();
+    // A dozen of cycles of the condensed problem: sweeps, and factors.
+    const double cycles = 12 * n * n * (10 + n / 6);
+    return n > 0 &&
+      tree->cost(dim) + cycles <=
+      (others_have_failed ? affordable<dim> : cheap<dim>)*dim *
+        matrix->n_rows();
+  }
+
+
+
+  // In the frames of contact nodes nothing changes: these are numbered anew.
+  template <int dim>
+  std::unique_ptr<typename CondensedSolver<dim>::Small>
+  CondensedSolver<dim>::make_small_problem(const VectorType &u) const
+  {
+    const std::vector<unsigned int> &kept = tree->fronts().back().nodes;
+    const NodeNumbering &numbering        = problem.constraints.numbering();
+
+    std::vector<ContactNode<dim>> nodes(problem.contact.begin(),
+                                        problem.contact.end());
+    std::vector<double>           own_values, own_measures;
+    for (ContactNode<dim> &p : nodes)
+      {
+        for (unsigned int d = 0; d < dim; ++d)
+          own_values.push_back(u.local_element(dim * p.node + d));
+        own_measures.push_back(problem.face_measures[p.node]);
+        p.node = number[numbering.global(p.node)];
+      }
+    nodes                              = gather(nodes);
+    const std::vector<double> at_nodes = gather(own_values),
+                              measures = gather(own_measures);
+
+    std::vector<char>   is_prescribed;
+    std::vector<double> values(dim * kept.size());
+    for (const unsigned int i : kept)
+      is_prescribed.insert(is_prescribed.end(),
+                           is_held.begin() + dim * i,
+                           is_held.begin() + dim * (i + 1));
+    for (unsigned int p = 0; p < nodes.size(); ++p)
+      std::copy_n(
+        at_nodes.begin() + dim * p, dim, values.begin() + dim * nodes[p].node);
+
+    auto                      pattern = std::make_shared<NodePattern>();
+    std::vector<unsigned int> row(kept.size());
+    for (unsigned int i = 0; i < kept.size(); ++i)
+      {
+        for (unsigned int j = 0; j < kept.size(); ++j)
+          row[j] = j;
+        pattern->append_row(row);
+      }
+    NodeBlockMatrix<dim> S(pattern);
+    for (unsigned int i = 0; i < kept.size(); ++i)
+      for (std::size_t e = S.row_begin(i); e < S.row_end(i); ++e)
+        {
+          const NodeBlock<dim> block = condensation->block(i, S.column(e));
+          std::copy(block.begin(), block.end(), S.block(e));
+        }
+
+    auto small = std::make_unique<Small>(
+      is_prescribed, values, std::move(S), nodes, problem);
+    for (unsigned int p = 0; p < nodes.size(); ++p)
+      small->face_measures[nodes[p].node] = measures[p];
+    return small;
+  }
+
+
+
+  template <int dim>
+  SolverReport
+  CondensedSolver<dim>::solve(const TrescaFunctional<dim> &functional,
+                              Iterate                      x,
+                              const SolverSettings        &settings,
+                              const CoulombSettings       &limits,
+                              const Progress              &progress)
+  {
+    Assert(is_worthwhile(true), ExcMessage("Ask is_worthwhile() first."));
+    const PhaseCosts before = phase_costs(problem.communicator());
+    SolverReport     report;
+    if (!condensation)
+      {
+        const PhaseScope phase(problem.communicator(),
+                               SolverPhase::matrix_updates);
+        condensation =
+          std::make_unique<Condensation<dim>>(*matrix, *tree, is_held);
+        has_failed = true_on_any_process(!condensation->factorize(),
+                                         problem.communicator());
+      }
+    if (has_failed)
+      {
+        certify(report, functional, x.u, x.state);
+        return report;
+      }
+
+    // What each of them starts with, and the state of all contact nodes.
+    const std::unique_ptr<Small>     small = make_small_problem(x.u);
+    const std::vector<unsigned int> &kept  = tree->fronts().back().nodes;
+    std::vector<char>                flags;
+    std::vector<double>              normal_forces;
+    for (unsigned int p = 0; p < x.state.size(); ++p)
+      {
+        flags.push_back(x.state.in_contact(p) + 2 * x.state.sticks(p));
+        normal_forces.push_back(x.state.normal_force(p));
+      }
+    flags         = gather(flags);
+    normal_forces = gather(normal_forces);
+    ContactState state(small->contact.size(), x.state.has_friction());
+    for (unsigned int p = 0; p < state.size(); ++p)
+      {
+        state.set(p, flags[p] & 1, flags[p] & 2);
+        state.set_normal_force(p, normal_forces[p]);
+      }
+    const unsigned int first_own = first_of_own_contact_nodes();
+
+    const TrescaFunctional<dim> energy(small->problem);
+    const MonotoneSmoother<dim> smoother(small->problem, settings.local_solver);
+    Linearization<dim>     linearization(small->problem, settings.truncation);
+    DenseCorrection<dim>   correction(small->problem);
+    LineSearch<dim>        line_search(energy, 1., 0);
+    MonotoneMultigrid<dim> iteration(energy,
+                                     smoother,
+                                     linearization,
+                                     correction,
+                                     line_search,
+                                     settings.smoothing_steps);
+    CoulombSettings        its_limits(limits);
+    its_limits.certificate_tolerance = std::numeric_limits<double>::infinity();
+
+    const bool is_first =
+      Utilities::MPI::this_mpi_process(problem.communicator()) == 0;
+    bool       has_converged = false;
+    VectorType residual(x.u), image(small->u), start(small->u);
+    for (unsigned int pass = 0; pass < passes; ++pass)
+      {
+        // What is left over at all nodes, condensed: S (u_c - start) is to be
+        // this and the contact forces.
+        problem.stiffness.residual(residual, problem.forces, x.u);
+        std::vector<double> values = gather(std::vector<double>(
+          residual.begin(), residual.begin() + residual.locally_owned_size()));
+        condensation->reduce(values);
+        start = small->u;
+        small->stiffness.vmult(image, start);
+        for (unsigned int k = 0; k < kept.size(); ++k)
+          for (unsigned int d = 0; d < dim; ++d)
+            small->forces.local_element(dim * k + d) =
+              image.local_element(dim * k + d) + values[dim * kept[k] + d];
+
+        // One process solves for all of them, so that they cannot disagree, and
+        // all pay for it.
+        const std::vector<CycleInfo> earlier = report.cycles;
+        const PhaseScope phase(problem.communicator(), SolverPhase::coarsest);
+        if (is_first)
+          report = CoulombSolver<dim>(iteration, its_limits)
+                     .solve(small->u, state, progress);
+        share(report, small->u, state);
+        for (unsigned int k = 0; !is_first && k < report.cycles.size(); ++k)
+          if (limits.limits.budget)
+            limits.limits.budget->take_cycle();
+
+        for (unsigned int k = 0; k < kept.size(); ++k)
+          for (unsigned int d = 0; d < dim; ++d)
+            values[dim * kept[k] + d] = small->u.local_element(dim * k + d) -
+              start.local_element(dim * k + d);
+        condensation->expand(values);
+        const unsigned int first =
+          dim * problem.constraints.numbering().distribution().global(0);
+        for (unsigned int i = 0; i < x.u.locally_owned_size(); ++i)
+          if (!is_absent[(first + i) / dim] && !is_held[first + i])
+            x.u.local_element(i) += values[first + i];
+        for (unsigned int p = 0; p < x.state.size(); ++p)
+          {
+            const unsigned int q = first_own + p;
+            x.state.set(p, state.in_contact(q), state.sticks(q));
+            x.state.set_normal_force(p, state.normal_force(q));
+          }
+
+        // The energy of the whole body is another one by that of what has been
+        // eliminated.
+        const double energy_on_contact_nodes = report.energy;
+        certify(report, functional, x.u, x.state);
+        for (CycleInfo &cycle : report.cycles)
+          cycle.energy += report.energy - energy_on_contact_nodes;
+        report.cycles.insert(
+          report.cycles.begin(), earlier.begin(), earlier.end());
+        // What a later pass did not get to is there already.
+        has_converged = (report.converged || has_converged) &&
+          report.certificate.largest() <= limits.certificate_tolerance;
+        if (!report.converged ||
+            report.certificate.largest() <=
+              certain * limits.certificate_tolerance)
+          break;
+      }
+    report.converged     = has_converged;
+    report.costs         = phase_costs(problem.communicator()) - before;
+    report.matrix_memory = problem.stiffness.memory_consumption();
+    report.solver_memory = memory_consumption() +
+      small->stiffness.memory_consumption() + smoother.memory_consumption() +
+      correction.memory_consumption();
+    return report;
+  }
+
+
+
+  // What the first process has found, on all of them.
+  template <int dim>
+  void
+  CondensedSolver<dim>::share(SolverReport &report,
+                              VectorType   &u,
+                              ContactState &state) const
+  {
+    if (is_alone(problem.communicator()))
+      return;
+    std::vector<double> values = {double(report.converged),
+                                  double(report.inner_converged),
+                                  double(report.outer_iterations),
+                                  report.contraction,
+                                  report.algebraic_error,
+                                  report.energy,
+                                  double(report.cycles.size())};
+    for (const CycleInfo &cycle : report.cycles)
+      values.insert(values.end(),
+                    {cycle.increment,
+                     cycle.energy,
+                     cycle.step_length,
+                     cycle.truncated,
+                     cycle.residual});
+    values.insert(values.end(), u.begin(), u.end());
+    for (unsigned int p = 0; p < state.size(); ++p)
+      values.insert(values.end(),
+                    {double(state.in_contact(p)),
+                     double(state.sticks(p)),
+                     state.normal_force(p)});
+    values = Utilities::MPI::broadcast(problem.communicator(), values, 0);
+
+    auto next               = values.begin();
+    report.converged        = *next++;
+    report.inner_converged  = *next++;
+    report.outer_iterations = *next++;
+    report.contraction      = *next++;
+    report.algebraic_error  = *next++;
+    report.energy           = *next++;
+    report.cycles.resize(*next++);
+    for (CycleInfo &cycle : report.cycles)
+      for (double *value : {&cycle.increment,
+                            &cycle.energy,
+                            &cycle.step_length,
+                            &cycle.truncated,
+                            &cycle.residual})
+        *value = *next++;
+    std::copy_n(next, u.locally_owned_size(), u.begin());
+    next += u.locally_owned_size();
+    for (unsigned int p = 0; p < state.size(); ++p, next += 3)
+      {
+        state.set(p, next[0] != 0., next[1] != 0.);
+        state.set_normal_force(p, next[2]);
+      }
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  CondensedSolver<dim>::first_of_own_contact_nodes() const
+  {
+    const MPI_Comm comm = problem.communicator();
+    if (is_alone(comm))
+      return 0;
+    const auto sizes = Utilities::MPI::all_gather(
+      comm, static_cast<unsigned int>(problem.contact.size()));
+    return std::accumulate(sizes.begin(),
+                           sizes.begin() +
+                             Utilities::MPI::this_mpi_process(comm),
+                           0u);
+  }
+
+
+
+  template <int dim>
+  std::size_t
+  CondensedSolver<dim>::memory_consumption() const
+  {
+    return gathered.memory_consumption() +
+      (condensation ? condensation->memory_consumption() : 0);
+  }
+
+
+
+  template class CondensedSolver<2>;
+  template class CondensedSolver<3>;
+} // namespace Friction

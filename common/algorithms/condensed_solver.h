@@ -1,0 +1,99 @@
+#ifndef friction_algorithms_condensed_solver_h
+#define friction_algorithms_condensed_solver_h
+
+#include <common/algorithms/coulomb_solver.h>
+#include <common/discretization/discrete_problem.h>
+#include <common/nodes/condensation.h>
+#include <common/nodes/elimination_tree.h>
+
+#include <deal.II/base/point.h>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * Solves the discrete contact problem on the contact nodes alone: all others
+   * are condensed, see Condensation, and what remains is the same problem with
+   * a dense matrix, for which CoulombSolver needs no levels. Coarse functions
+   * have no part in it, so that no material and no shape of cells can make them
+   * fail. The matrix is factorised once, whatever the phases turn out to be,
+   * where Newton's method does so for each set of phases.
+   *
+   * That is the right thing to do as long as it is cheap: the work grows with
+   * the power 3/2 of the number of unknowns in two dimensions, and with its
+   * square in three.
+   *
+   * All processes have the whole matrix and factorise it; the first one solves
+   * for all of them.
+   */
+  template <int dim>
+  class CondensedSolver
+  {
+  public:
+    /**
+     * Collective.
+     * @param problem    kept by reference.
+     * @param positions  of the nodes that this process owns.
+     */
+    CondensedSolver(const DiscreteProblem<dim>    &problem,
+                    const std::vector<Point<dim>> &positions);
+
+    ~CondensedSolver();
+
+    /** Whether it takes no longer than a few dozen multigrid cycles, or, if
+     * others have failed, a few hundreds. The same on all processes. */
+    bool is_worthwhile(const bool others_have_failed = false) const;
+
+    /**
+     * As CoulombSolver::solve(); collective. The cycles that are reported are
+     * those of the condensed problem, which cost next to nothing.
+     * @param functional  of the problem.
+     * @param settings    sweeps and local solver.
+     */
+    SolverReport solve(const TrescaFunctional<dim> &functional,
+                       Iterate                      x,
+                       const SolverSettings        &settings,
+                       const CoulombSettings       &limits,
+                       const Progress              &progress);
+
+    /** In bytes, on this process. */
+    std::size_t memory_consumption() const;
+
+  private:
+    const DiscreteProblem<dim> &problem;
+
+    // The rows of all processes' nodes, on several processes; the matrix of the
+    // problem, on one.
+    NodeBlockMatrix<dim>        gathered;
+    const NodeBlockMatrix<dim> *matrix;
+
+    // Of all nodes: those that take no part hang or are held altogether.
+    // Contact nodes have a number among those.
+    std::vector<std::array<double, 3>> positions;
+    std::vector<char>                  is_held, is_absent, is_contact;
+    std::vector<unsigned int>          number;
+
+    std::unique_ptr<EliminationTree>   tree;
+    std::unique_ptr<Condensation<dim>> condensation;
+    bool                               has_failed = false;
+
+    void gather_nodes(const std::vector<Point<dim>> &own_positions);
+
+    void gather_matrix();
+
+    struct Small;
+    std::unique_ptr<Small> make_small_problem(const VectorType &u) const;
+
+    void share(SolverReport &report, VectorType &u, ContactState &state) const;
+
+    unsigned int first_of_own_contact_nodes() const;
+
+    template <typename Value>
+    std::vector<Value> gather(const std::vector<Value> &own) const;
+  };
+} // namespace Friction
+
+#endif

@@ -1,0 +1,230 @@
+// CondensedSolver against CoulombSolver with corrections from the whole matrix,
+// which share the relaxation but neither matrix nor factors: the same
+// displacements, normal forces and phases, for all laws of friction, on curved
+// bodies and meshes with hanging nodes, on any number of processes; the second
+// call has nothing left to do. Histories and platens come out the same with and
+// without it. Where it knows that coarse levels will not do,
+// SafeguardedSolver begins with it.
+
+#include <common/algorithms/condensed_solver.h>
+#include <common/algorithms/nested_iteration.h>
+#include <common/iteration/algebraic_correction.h>
+#include <common/levels/aggregate_levels.h>
+
+#include <iostream>
+
+#include <tests/support/check.h>
+#include <tests/support/discretized.h>
+#include <tests/support/random_problem.h>
+
+using namespace Tests;
+
+namespace
+{
+  template <int dim>
+  void
+  test(const Parameters &parameters, const FrictionLaw law, Random &random)
+  {
+    const RandomProblem<dim>   whole(parameters, 3, .5, random);
+    const DiscreteProblem<dim> problem =
+      whole.friction_problem(law == FrictionLaw::none ? 0. : .4, law);
+    SolverSettings settings;
+    settings.inner_tolerance = 1e-11;
+    const CoulombSettings limits(settings);
+
+    const TrescaFunctional<dim> functional(problem);
+    const MonotoneSmoother<dim> smoother(problem);
+    Linearization<dim>       linearization(problem, TruncationVariant::phases);
+    AlgebraicCorrection<dim> correction(problem, CoarsestMethod::direct);
+    LineSearch<dim>          line_search(functional, 1., 0);
+    MonotoneMultigrid<dim>   iteration(
+      functional, smoother, linearization, correction, line_search);
+
+    VectorType   u = admissible_start(whole.discretization), v = u;
+    ContactState state(problem.contact.size(), problem.has_friction()),
+      other = state;
+    for (unsigned int p = 0; p < state.size(); ++p)
+      {
+        state.set_normal_force(p, 1e-3 * problem.contact[p].measure);
+        other.set_normal_force(p, state.normal_force(p));
+      }
+    check_everywhere(
+      CoulombSolver<dim>(iteration, limits).solve(u, state).converged,
+      "  solved by the whole matrix");
+
+    CondensedSolver<dim> condensed(
+      problem,
+      node_positions(whole.discretization.dof_handler(), problem.constraints));
+    check_everywhere(condensed.is_worthwhile(), "  the body is small");
+    const auto solve = [&]() {
+      return condensed.solve(functional,
+                             Iterate(v, other, problem.has_coulomb_friction()),
+                             settings,
+                             limits,
+                             {});
+    };
+    const SolverReport report = solve();
+    check_everywhere(report.converged, "  solved by contact nodes");
+    check_everywhere(report.certificate.largest() < 1e-8, "  and certified");
+    check_everywhere(std::abs(report.cycles.back().energy / report.energy - 1) <
+                       1e-10,
+                     "  cycles tell the energy of the body");
+
+    VectorType difference = u;
+    difference -= v;
+    const double distance = difference.linfty_norm() / u.linfty_norm();
+    check_everywhere(distance < 1e-8, "  the displacement is the same");
+    double largest = 0, worst = 0;
+    bool   same = true;
+    for (unsigned int p = 0; p < state.size(); ++p)
+      {
+        same = same && state.in_contact(p) == other.in_contact(p) &&
+          state.sticks(p) == other.sticks(p);
+        largest = std::max(largest, state.normal_force(p));
+        worst   = std::max(
+          worst, std::abs(state.normal_force(p) - other.normal_force(p)));
+      }
+    largest = Utilities::MPI::max(largest, MPI_COMM_WORLD);
+    check_everywhere(same, "  phases are");
+    check_everywhere(worst <= 1e-6 * largest, "  and normal forces");
+
+    const VectorType before = v;
+    check_everywhere(solve().cycles.size() <= 2, "  nothing is left to do");
+    difference = v;
+    difference -= before;
+    check_everywhere(difference.linfty_norm() < 1e-8 * u.linfty_norm(),
+                     "  and nothing is done");
+  }
+
+
+
+  template <int dim>
+  void
+  test(Random &random)
+  {
+    if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+      std::cout << dim << "D" << std::endl;
+    for (const FrictionLaw law :
+         {FrictionLaw::none, FrictionLaw::tresca, FrictionLaw::coulomb})
+      test<dim>(curved_parameters<dim>(FrictionLaw::coulomb, .4), law, random);
+  }
+
+
+
+  // Histories, in which slip has its origin where the load step before ended,
+  // with sides that are held in one direction where they meet contact, and with
+  // a force that a platen has to find its place for: the same with and without
+  // condensation. The force is met to a millionth.
+  template <int dim>
+  void
+  test_history(const std::string       &name,
+               std::vector<std::string> entries,
+               const double             bound = 1e-7)
+  {
+    for (const std::string entry :
+         {std::string("Refinement/Initial refinements=") +
+            (dim == 2 ? "2" : "1"),
+          std::string("Material/Regions=where abs(") + (dim == 2 ? "y" : "z") +
+            " - 0.33) < 0.1: 1e3*E, nu",
+          std::string("Solver/Inner tolerance=1e-11"),
+          std::string("Load steps/Times=1, 2, 3")})
+      entries.push_back(entry);
+    std::vector<VectorType> found[2];
+    bool                    converged = true, is_condensed = true;
+    for (const bool condensation : {false, true})
+      {
+        entries.push_back(std::string("Solver/Condensation=") +
+                          (condensation ? "true" : "false"));
+        NestedIteration<dim> nest(
+          read_parameters((dim == 2 ? SCENES_DIR "/" : SCENES_3D_DIR "/") +
+                            std::string("block.prm"),
+                          entries));
+        nest.begin();
+        do
+          {
+            const SolverReport &report = nest.solve();
+            converged                  = converged && report.converged;
+            for (const SolverAttempt &attempt : report.attempts)
+              is_condensed = is_condensed &&
+                (attempt.name == "Algorithm 3 on contact nodes alone") ==
+                  condensation;
+            is_condensed =
+              is_condensed && !(condensation && report.attempts.empty());
+            found[condensation].push_back(nest.displacement());
+        } while (nest.begin_next_load_step());
+        entries.pop_back();
+      }
+    double distance = 0;
+    for (unsigned int step = 0; step < found[0].size(); ++step)
+      {
+        VectorType difference = found[0][step];
+        difference -= found[1][step];
+        distance = std::max(
+          distance, difference.linfty_norm() / found[0][step].linfty_norm());
+      }
+    check_everywhere(converged && found[0].size() == 3, name + ": solved");
+    check_everywhere(is_condensed, "  on contact nodes alone");
+    check_everywhere(distance < bound, "  displacements are the same");
+  }
+
+
+
+  // What the safeguards do on the first mesh of the scene "block".
+  template <int dim>
+  void
+  test_safeguards(const std::string &name,
+                  const std::string &entry,
+                  const bool         is_hard,
+                  const std::string &other = "")
+  {
+    std::vector<std::string> entries = {
+      std::string("Refinement/Initial refinements=") + (dim == 2 ? "3" : "2"),
+      entry};
+    if (!other.empty())
+      entries.push_back(other);
+    NestedIteration<dim> nest(
+      read_parameters((dim == 2 ? SCENES_DIR "/" : SCENES_3D_DIR "/") +
+                        std::string("block.prm"),
+                      entries));
+    nest.begin();
+    nest.solve();
+    const SolverReport &report           = nest.report();
+    const bool          on_contact_nodes = report.attempts.size() == 1 &&
+      report.attempts[0].name == "Algorithm 3 on contact nodes alone";
+    check_everywhere(report.converged &&
+                       (is_hard ? on_contact_nodes : report.attempts.empty()),
+                     name + (is_hard ? " is" : " is not") +
+                       " solved on contact nodes alone");
+  }
+} // namespace
+
+
+
+int
+main(int argc, char **argv)
+{
+  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  Random                           random(1);
+  test<2>(random);
+  test<3>(random);
+  const std::string to_and_fro = "(2 - t)*0.02, ";
+  test_history<2>("history",
+                  {"Boundary conditions/Displacement=3: " + to_and_fro +
+                   "-0.02; 0: 0, free"});
+  test_history<2>("platen",
+                  {"Boundary conditions/Displacement=3: 0, -0.005",
+                   "Boundary conditions/Force=3: (2 - t)*0.002, -0.02"},
+                  1e-5);
+  test_history<3>("history",
+                  {"Boundary conditions/Displacement=5: " + to_and_fro +
+                   "0.01, -0.02; 2: free, 0, free"});
+  const std::string layer = "Material/Regions=where abs(y - 0.33) < 0.1: ";
+  test_safeguards<2>("a block", "Solver/Safeguards=true", false);
+  test_safeguards<2>("one with a stiff layer", layer + "1e3*E, nu", true);
+  test_safeguards<2>(
+    "one with a layer that is hardly stiffer", layer + "3*E, nu", false);
+  test_safeguards<2>("one that keeps its volume",
+                     "Material/Poisson ratio=0.4999",
+                     true,
+                     "Material/Volumetric strain=mean");
+}
