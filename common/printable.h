@@ -2,6 +2,7 @@
 #define friction_printable_h
 
 #include <cstddef>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -80,6 +81,31 @@ namespace Friction
           const std::string &several)
   {
     return std::to_string(n) + " " + (n == 1 ? one : several);
+  }
+
+
+
+  /** A number with some digits. */
+  inline std::string
+  number(const double x, const unsigned int n_digits = 3)
+  {
+    std::ostringstream text;
+    text.precision(n_digits);
+    text << x;
+    return text.str();
+  }
+
+
+
+  /** A point, deal.II's: "(0.5, 1)". */
+  template <typename Point>
+  std::string
+  coordinates(const Point &p)
+  {
+    std::string text;
+    for (unsigned int d = 0; d < Point::dimension; ++d)
+      text += (d == 0 ? "(" : ", ") + number(p[d], 6);
+    return text + ')';
   }
 
 

@@ -2,6 +2,7 @@
 #include <common/parallel/collective_error.h>
 #include <common/parallel/reductions.h>
 #include <common/parameters/wrong_number.h>
+#include <common/printable.h>
 
 #include <deal.II/base/quadrature_lib.h>
 
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <sstream>
 
 namespace Friction
 {
@@ -63,17 +63,6 @@ namespace Friction
             }
         }
       return frame;
-    }
-
-
-
-    template <int dim>
-    std::string
-    describe(const Point<dim> &point)
-    {
-      std::ostringstream text;
-      text << "(" << point << ")";
-      return text.str();
     }
   } // namespace
 
@@ -183,7 +172,7 @@ namespace Friction
                 if (constraints.is_fixed(number))
                   continue;
                 throw InputError(
-                  scene.subject() + "the node at " + describe(vertex.point) +
+                  scene.subject() + "the node at " + coordinates(vertex.point) +
                   " lies on two contact boundaries, those of '" +
                   conditions[std::min(vertex.condition, vertex.other)]
                     .section() +
@@ -336,7 +325,7 @@ namespace Friction
             !(constraints.is_fixed(node.node) &&
               condition.ignores_prescribed_penetration))
           throw InputError(
-            scene.subject_at_time() + "the node at " + describe(node.point) +
+            scene.subject_at_time() + "the node at " + coordinates(node.point) +
             " on the contact boundary lies inside the obstacle, and there is "
             "no way out of it within the size of the body; '" +
             condition.obstacle_section() +
@@ -353,7 +342,7 @@ namespace Friction
           throw InputError(
             scene.subject_at_time() +
             "the prescribed displacement of the node at " +
-            describe(node.point) +
+            coordinates(node.point) +
             ", which also lies on the contact boundary, pushes it into the "
             "obstacle by " +
             std::to_string(prescribed_value * normal - gap) +
@@ -365,7 +354,7 @@ namespace Friction
     for (const auto &e : prescribed_tangents)
       if (std::abs(e * normal) > 1e-8)
         throw InputError(
-          scene.subject() + "at " + describe(node.point) +
+          scene.subject() + "at " + coordinates(node.point) +
           " on the contact boundary a displacement component is prescribed "
           "that has a part in normal direction, so that it competes with "
           "contact: prescribe all components there, or only tangential "

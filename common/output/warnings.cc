@@ -1,31 +1,22 @@
+#include <common/output/mesh_warnings.h>
 #include <common/output/warnings.h>
 #include <common/parallel/reductions.h>
 #include <common/printable.h>
-#include <common/scene/rigid_motions.h>
-#include <common/scene/seams.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/numbers.h>
-
-#include <deal.II/fe/fe_q.h>
-#include <deal.II/fe/fe_values.h>
-
-#include <deal.II/base/quadrature_lib.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
-#include <sstream>
+#include <set>
+#include <utility>
 
 namespace Friction
 {
   namespace
   {
-    // Edges of a boundary that is meant to be smooth are flatter than the
-    // first, and do not matter if they are flatter than the second; degrees.
-    constexpr double smallest_corner = 40., smallest_edge = 3.;
-
     // Where a round body touches a flat obstacle, the normals of nodes at the
     // rim of the contact zone differ by some degrees, to both sides. Beyond
     // this it is a slope, or a corner: ten degrees change a ratio of forces by
@@ -42,31 +33,6 @@ namespace Friction
 
     // Of a boundary that is not to touch the obstacle, relative to the body.
     constexpr double visible_depth = 1e-3;
-
-
-
-    template <int dim>
-    std::string
-    describe(const Point<dim> &p)
-    {
-      std::ostringstream text;
-      text.precision(4);
-      for (unsigned int d = 0; d < dim; ++d)
-        text << (d == 0 ? "(" : ", ") << p[d];
-      text << ')';
-      return text.str();
-    }
-
-
-
-    std::string
-    number(const double x, const unsigned int n_digits = 3)
-    {
-      std::ostringstream text;
-      text.precision(n_digits);
-      text << x;
-      return text.str();
-    }
 
 
 
@@ -99,99 +65,6 @@ namespace Friction
               result.second[d] = other[d + 1];
           }
       return result;
-    }
-
-
-
-    // The coarse mesh is known to all processes.
-    template <int dim>
-    void
-    warn_of_cuts(const parallel::distributed::Triangulation<dim> &mesh,
-                 std::vector<std::string>                        &warnings)
-    {
-      const auto one_of_them = [](const Seam<dim>   &seam,
-                                  const std::string &lie) {
-        return lie + (seam.n == 1 ? ", at " : ", one of them at ") +
-          describe(seam.where) + ", so that the body is cut there; ";
-      };
-      const std::string faces = dim == 2 ? "edges" : "faces";
-      const Seam<dim>   pairs = faces_on_each_other(mesh);
-      if (pairs.n > 0)
-        warnings.push_back("Warning: " + counted(pairs.n, "pair", "pairs") +
-                           " of boundary " + faces +
-                           one_of_them(pairs,
-                                       pairs.n == 1 ? " lies on each other"
-                                                    : " lie on each other") +
-                           "if it should not be, merge the nodes of the mesh.");
-      const Seam<dim> nodes = nodes_on_faces(mesh);
-      if (nodes.n > 0)
-        warnings.push_back(
-          "Warning: " + counted(nodes.n, "node", "nodes") + " of the boundary" +
-          one_of_them(nodes,
-                      (nodes.n == 1 ? " lies" : " lie") +
-                        std::string(" on boundary ") + faces +
-                        " of other cells between their corners") +
-          "if it should not be, mesh the parts together, with the same nodes "
-          "on both sides.");
-
-      if (pairs.n > 0 || nodes.n > 0)
-        return;
-      std::vector<unsigned int> part_of_cell;
-      const unsigned int        n_parts = find_parts(mesh, part_of_cell);
-      if (n_parts > 1)
-        warnings.push_back(
-          "Warning: the body consists of " + std::to_string(n_parts) +
-          " parts that have no " + (dim == 2 ? "edge" : "face") +
-          " in common; nothing keeps one from going through another.");
-    }
-
-
-
-    template <int dim>
-    void
-    warn_of_polygons(const parallel::distributed::Triangulation<dim> &mesh,
-                     const Scene<dim>                                &scene,
-                     std::vector<std::string>                        &warnings)
-    {
-      const FE_Q<dim>   element(1);
-      FEFaceValues<dim> values(
-        element, QMidpoint<dim - 1>(), update_normal_vectors);
-      std::map<unsigned int, std::vector<Tensor<1, dim>>> normals;
-      std::map<unsigned int, Point<dim>>                  points;
-      for (const auto &cell : mesh.cell_iterators_on_level(0))
-        for (const unsigned int f : cell->face_indices())
-          if (cell->at_boundary(f) &&
-              scene.contact_on(cell->face(f)->boundary_id()) != nullptr)
-            {
-              values.reinit(cell, f);
-              for (const unsigned int v : cell->face(f)->vertex_indices())
-                {
-                  const unsigned int vertex = cell->face(f)->vertex_index(v);
-                  normals[vertex].push_back(values.normal_vector(0));
-                  points[vertex] = cell->face(f)->vertex(v);
-                }
-            }
-      double     angle = 0;
-      Point<dim> where;
-      for (const auto &[vertex, list] : normals)
-        for (const auto &a : list)
-          {
-            const double here = degrees(a * list.front());
-            if (here < smallest_corner && here > angle)
-              {
-                angle = here;
-                where = points[vertex];
-              }
-          }
-      if (angle > smallest_edge)
-        warnings.push_back("Warning: the contact boundary is that of the mesh "
-                           "file, with edges of "
-                           "up to " +
-                           number(angle) + " degrees, one of them at " +
-                           describe(where) +
-                           ", which stay however fine the mesh, and where the "
-                           "contact stress has "
-                           "peaks; a finer mesh file has flatter ones.");
     }
 
 
@@ -298,8 +171,8 @@ namespace Friction
                         continue;
                       warnings.push_back(
                         "Warning: 'Boundary conditions/Displacement' moves " +
-                        describe(p) + " by " + number(other.second) + " in " +
-                        "xyz"[c] + " direction with boundary " +
+                        coordinates(p) + " by " + number(other.second) +
+                        " in " + "xyz"[c] + " direction with boundary " +
                         std::to_string(other.first) + " and by " +
                         number(value) + " with boundary " +
                         std::to_string(condition.boundary_id) +
@@ -416,6 +289,26 @@ namespace Friction
       double largest_force = 0, all_forces = 0;
       for (unsigned int i = 0; i < force.locally_owned_size(); ++i)
         all_forces += std::abs(force.local_element(i));
+
+      // Not those of the boundary that a point is on as well: of the obstacle,
+      // and of what is prescribed there.
+      std::set<types::global_dof_index> others;
+      for (const ContactNode<dim> &p : discretization.contact())
+        for (unsigned int d = 0; d < dim; ++d)
+          others.insert(
+            constraints.partitioner()->local_to_global(dim * p.node + d));
+      for (const auto &cell :
+           discretization.dof_handler().active_cell_iterators())
+        if (!cell->is_artificial())
+          for (const unsigned int f : cell->face_indices())
+            for (const auto &condition : scene.dirichlet_conditions())
+              if (cell->at_boundary(f) &&
+                  cell->face(f)->boundary_id() == condition.boundary_id)
+                for (const unsigned int v : cell->face(f)->vertex_indices())
+                  for (unsigned int d = 0; d < dim; ++d)
+                    if (condition.components[d])
+                      others.insert(cell->face(f)->vertex_dof_index(v, d));
+
       Point<dim> where;
       for (const auto &cell :
            discretization.dof_handler().active_cell_iterators())
@@ -424,6 +317,7 @@ namespace Friction
             cell, [&](const PinnedPoint<dim> &pin, const unsigned int v) {
               const auto dof = cell->vertex_dof_index(v, pin.component);
               if (constraints.partitioner()->in_local_range(dof) &&
+                  others.count(dof) == 0 &&
                   std::abs(force(dof)) > largest_force)
                 {
                   largest_force = std::abs(force(dof));
@@ -435,7 +329,7 @@ namespace Friction
         largest<dim>(constraints.communicator(), largest_force, where);
       if (most.first > large_share * all_forces)
         warnings.push_back(
-          "Warning: the point that is pinned at " + describe(most.second) +
+          "Warning: the point that is pinned at " + coordinates(most.second) +
           " bears a force of " + number(most.first) +
           ", under which the body gives way the more the finer the mesh is; "
           "points can keep a body from drifting away, what bears a load has to "
@@ -494,11 +388,13 @@ namespace Friction
     warn_of_useless_tractions(scene, warnings);
     warn_of_materials(discretization, warnings);
     warn_of_contradictions(mesh, scene, discretization.body_size(), warnings);
-    warn_of_cuts(mesh, warnings);
+    for (const std::string &sentence : warnings_about_cuts(mesh))
+      warnings.push_back(sentence);
     const bool is_refined = parameters.refinement.initial_refinements > 0 ||
       parameters.refinement.levels > 0;
     if (parameters.scene.geometry == GeometryKind::mesh_file && is_refined)
-      warn_of_polygons(mesh, scene, warnings);
+      for (const std::string &sentence : warnings_about_edges(mesh, scene))
+        warnings.push_back(sentence);
 
     const auto               &conditions = scene.contact_conditions();
     std::vector<unsigned int> n_nodes(conditions.size(), 0);
@@ -529,7 +425,7 @@ namespace Friction
     if (deepest.first > 1e-10 * discretization.body_size())
       warnings.push_back("Warning: the body lies inside the obstacle before it "
                          "is loaded, at " +
-                         describe(deepest.second) + " by " +
+                         coordinates(deepest.second) + " by " +
                          number(deepest.first) +
                          ", and will be pushed out of it; if this is no press "
                          "fit, move one of them.");
@@ -537,7 +433,8 @@ namespace Friction
     if (other.first > visible_depth * discretization.body_size())
       warnings.push_back("Warning: a node on the contact boundary lies inside "
                          "the obstacle, at " +
-                         describe(other.second) + " by " + number(other.first) +
+                         coordinates(other.second) + " by " +
+                         number(other.first) +
                          ", and cannot get into contact, since the way out of "
                          "it leads nowhere the boundary faces; move one of "
                          "them.");
@@ -625,7 +522,7 @@ namespace Friction
       warnings.push_back(
         "Warning: a node of the boundary that is no contact node has gone "
         "through the surface of the obstacle, by " +
-        number(other.first) + " at " + describe(other.second) +
+        number(other.first) + " at " + coordinates(other.second) +
         "; is 'Contact/Boundary id' the right one?");
     warn_of_loaded_pins(discretization, displacement, warnings);
     const auto &conditions = scene.contact_conditions();

@@ -57,20 +57,6 @@ namespace Friction
 
 
 
-    template <int dim>
-    std::string
-    describe(const Point<dim> &p)
-    {
-      std::ostringstream text;
-      text << '(';
-      for (unsigned int d = 0; d < dim; ++d)
-        text << (d > 0 ? ", " : "") << p[d];
-      text << ')';
-      return text.str();
-    }
-
-
-
     // Whether a cell goes around its face with the number f, seen from outside,
     // in one sense or in the other: a matter of the order of the vertices, so
     // that its two cells can be compared.
@@ -142,7 +128,7 @@ namespace Friction
     for (const unsigned int v : cell.vertices)
       center += vertices[v] / double(n_cell_vertices);
     return "number " + std::to_string(cell.number) + " around " +
-      describe(center);
+      coordinates(center);
   }
 
 
@@ -154,7 +140,7 @@ namespace Friction
     Point<dim> center;
     for (const unsigned int v : face)
       center += vertices[v] / double(n_face_vertices);
-    return "around " + describe(center);
+    return "around " + coordinates(center);
   }
 
 

@@ -157,8 +157,7 @@ namespace Friction
     std::vector<char> is_found(sorted.size(), 0);
     for (const std::vector<Point<dim>> &face : faces)
       {
-        double low = std::numeric_limits<double>::infinity(), high = -low,
-               size = 0;
+        double low = std::numeric_limits<double>::infinity(), high = -low;
         for (const Point<dim> &corner : face)
           {
             low  = std::min(low, along * Tensor<1, dim>(corner));

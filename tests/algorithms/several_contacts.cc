@@ -259,7 +259,7 @@ main(int argc, char **argv)
                         "Boundary conditions/Displacement=3: 0, -0.02"};
   test_refused("a corner is refused",
                wall + Entries{"Contact 2/Boundary id=1"},
-               "the node at (1 0) lies on two contact boundaries, those of "
+               "the node at (1, 0) lies on two contact boundaries, those of "
                "'Contact' and 'Contact 2'");
   test_refused("a boundary that is given twice",
                wall + Entries{"Contact 2/Boundary id=2"},

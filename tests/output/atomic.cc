@@ -109,7 +109,7 @@ main(int argc, char **argv)
   try_to([&]() { history.add_level(LevelRecord(), {}, {}); });
   list_files(directory);
   std::cout << "room for a file that there is" << std::endl;
-  for (const unsigned int size : {1000u, 2000u})
+  for (const std::uint64_t size : {1000ull, 1ull << 60})
     try_to(
       [&]() { demand_space(directory.file("text.txt"), MPI_COMM_SELF, size); });
   list_files(directory);
