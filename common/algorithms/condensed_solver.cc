@@ -360,11 +360,13 @@ namespace Friction
         // One process solves for all of them, so that they cannot disagree, and
         // all pay for it.
         const std::vector<CycleInfo> earlier = report.cycles;
-        const PhaseScope phase(problem.communicator(), SolverPhase::coarsest);
-        if (is_first)
-          report = CoulombSolver<dim>(iteration, its_limits)
-                     .solve(small->u, state, progress);
-        share(report, small->u, state);
+        {
+          const PhaseScope phase(problem.communicator(), SolverPhase::coarsest);
+          if (is_first)
+            report = CoulombSolver<dim>(iteration, its_limits)
+                       .solve(small->u, state, progress);
+          share(report, small->u, state);
+        }
         for (unsigned int k = 0; !is_first && k < report.cycles.size(); ++k)
           if (limits.limits.budget)
             limits.limits.budget->take_cycle();

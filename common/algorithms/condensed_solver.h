@@ -20,7 +20,7 @@ namespace Friction
    * a dense matrix, for which CoulombSolver needs no levels. Coarse functions
    * have no part in it, so that no material and no shape of cells can make them
    * fail. The matrix is factorised once, whatever the phases turn out to be,
-   * where Newton's method does so for each set of phases.
+   * where Newton's method with a direct solver does so for each set of phases.
    *
    * That is the right thing to do as long as it is cheap: the work grows with
    * the power 3/2 of the number of unknowns in two dimensions, and with its

@@ -165,14 +165,22 @@ namespace Friction
   // In two dimensions relaxation of lines is all that stretched cells need.
   template <int dim>
   bool
-  SafeguardedSolver<dim>::coarse_cells_may_be_to_blame()
+  SafeguardedSolver<dim>::mostly_lines_in_space() const
   {
     constexpr double mostly = .5;
+    return dim == 3 &&
+      levels.share_in_lines(levels.n_correction_levels()) >= mostly;
+  }
+
+
+
+  template <int dim>
+  bool
+  SafeguardedSolver<dim>::coarse_cells_may_be_to_blame()
+  {
     return has_defaults(settings) && !much_friction() &&
       levels.hierarchy().n_levels() > 1 &&
-      ((dim == 3 &&
-        levels.share_in_lines(levels.n_correction_levels()) >= mostly) ||
-       materials_do_jump());
+      (mostly_lines_in_space() || materials_do_jump());
   }
 
 
@@ -184,7 +192,7 @@ namespace Friction
   {
     if (!settings.condensation || !has_defaults(settings) || much_friction() ||
         !(others_have_failed || settings.nearly_incompressible ||
-          materials_do_jump()))
+          mostly_lines_in_space() || materials_do_jump()))
       return false;
     if (!condensed)
       condensed = std::make_unique<CondensedSolver<dim>>(
@@ -481,7 +489,9 @@ namespace Friction
           !contact_nodes_alone_are_better(others_have_failed) ||
           !budget->begin_attempt())
         return;
-      start_anew();
+      // Phases that one attempt has begun to find are a good guess.
+      if (all.attempts.size() > 1 || !is_finite(u, state, comm))
+        start_anew();
       is_condensed = true;
       attempt(
         (coulomb ? name : "the iteration") + " on contact nodes alone",
@@ -500,7 +510,8 @@ namespace Friction
              !much_friction())
       try_aggregates();
     else if (begin_with == Method::algebraic ||
-             (begin_with == Method::contact_nodes && !is_condensed))
+             (begin_with == Method::contact_nodes && !is_condensed &&
+              !much_friction()))
       {
         // Much dearer, so that others may try once what they can do on this
         // mesh.

@@ -19,9 +19,10 @@ namespace Friction
    * nowhere, by what may succeed:
    *
    * 1. the algorithm of the settings on contact nodes alone, see
-   *    CondensedSolver, where coarse functions are known not to help: materials
-   *    jump, or are nearly incompressible. There has to be not much friction,
-   *    and so few unknowns that this takes no longer than cycles;
+   *    CondensedSolver, where coarse functions are known to be of little help:
+   *    materials jump, or are nearly incompressible, or most nodes of a body in
+   *    three dimensions are in lines. There has to be not much friction, and so
+   *    few unknowns that this takes no longer than cycles;
    * 2. the algorithm of the settings, by default Algorithm 3. With much
    *    friction, or where materials jump, it has to show soon that it gets
    *    somewhere;
@@ -143,6 +144,8 @@ namespace Friction
     CoulombSettings later_settings(const double accuracy) const;
 
     bool materials_do_jump();
+
+    bool mostly_lines_in_space() const;
 
     bool coarse_cells_may_be_to_blame();
 

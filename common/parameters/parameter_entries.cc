@@ -501,8 +501,9 @@ namespace Friction
        "true",
        flag,
        "Whether the safeguards solve small bodies on contact nodes alone where "
-       "materials jump or are nearly incompressible, or where others have "
-       "failed: all other nodes are eliminated first, once and for all."},
+       "materials jump or are nearly incompressible, where most cells are "
+       "stretched in 3D, or where others have failed: all other nodes are "
+       "eliminated first, once and for all."},
 
       {"Output",
        "Directory",

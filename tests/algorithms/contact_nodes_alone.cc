@@ -121,7 +121,7 @@ namespace
                std::vector<std::string> entries,
                const double             bound = 1e-7)
   {
-    for (const std::string entry :
+    for (const std::string &entry :
          {std::string("Refinement/Initial refinements=") +
             (dim == 2 ? "2" : "1"),
           std::string("Material/Regions=where abs(") + (dim == 2 ? "y" : "z") +
