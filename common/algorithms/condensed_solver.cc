@@ -114,28 +114,12 @@ namespace Friction
 
 
 
-  // Of all processes, in the order of their ranks.
-  template <int dim>
-  template <typename Value>
-  std::vector<Value>
-  CondensedSolver<dim>::gather(const std::vector<Value> &own) const
-  {
-    if (is_alone(problem.communicator()))
-      return own;
-    std::vector<Value> all;
-    for (const std::vector<Value> &part :
-         Utilities::MPI::all_gather(problem.communicator(), own))
-      all.insert(all.end(), part.begin(), part.end());
-    return all;
-  }
-
-
-
   template <int dim>
   void
   CondensedSolver<dim>::gather_nodes(
     const std::vector<Point<dim>> &own_positions)
   {
+    const MPI_Comm                     comm        = problem.communicator();
     const NodalConstraints<dim>       &constraints = problem.constraints;
     const unsigned int                 n = constraints.n_owned_nodes();
     std::vector<std::array<double, 3>> places(n);
@@ -151,9 +135,9 @@ namespace Friction
       }
     for (const ContactNode<dim> &p : problem.contact)
       contact[p.node] = 1;
-    positions  = gather(places);
-    is_held    = gather(held);
-    is_contact = gather(contact);
+    positions  = gather_from_all(places, comm);
+    is_held    = gather_from_all(held, comm);
+    is_contact = gather_from_all(contact, comm);
 
     number.resize(positions.size());
     for (unsigned int i = 0, k = 0; i < number.size(); ++i)
@@ -166,6 +150,7 @@ namespace Friction
   void
   CondensedSolver<dim>::gather_matrix()
   {
+    const MPI_Comm              comm  = problem.communicator();
     const NodeBlockMatrix<dim> &own   = problem.stiffness.blocks();
     const NodeNumbering        &nodes = problem.constraints.numbering();
     std::vector<unsigned int>   lengths, columns;
@@ -179,9 +164,9 @@ namespace Friction
             values.insert(values.end(), own.block(e), own.block(e) + dim * dim);
           }
       }
-    lengths = gather(lengths);
-    columns = gather(columns);
-    values  = gather(values);
+    lengths = gather_from_all(lengths, comm);
+    columns = gather_from_all(columns, comm);
+    values  = gather_from_all(values, comm);
 
     auto                      pattern = std::make_shared<NodePattern>();
     std::vector<unsigned int> row;
@@ -226,6 +211,7 @@ namespace Friction
   std::unique_ptr<typename CondensedSolver<dim>::Small>
   CondensedSolver<dim>::make_small_problem(const VectorType &u) const
   {
+    const MPI_Comm                   comm = problem.communicator();
     const std::vector<unsigned int> &kept = tree->fronts().back().nodes;
     const NodeNumbering &numbering        = problem.constraints.numbering();
 
@@ -239,9 +225,9 @@ namespace Friction
         own_measures.push_back(problem.face_measures[p.node]);
         p.node = number[numbering.global(p.node)];
       }
-    nodes                              = gather(nodes);
-    const std::vector<double> at_nodes = gather(own_values),
-                              measures = gather(own_measures);
+    nodes                              = gather_from_all(nodes, comm);
+    const std::vector<double> at_nodes = gather_from_all(own_values, comm),
+                              measures = gather_from_all(own_measures, comm);
 
     std::vector<char>   is_prescribed;
     std::vector<double> values(dim * kept.size());
@@ -287,16 +273,15 @@ namespace Friction
                               const Progress              &progress)
   {
     Assert(is_worthwhile(true), ExcMessage("Ask is_worthwhile() first."));
-    const PhaseCosts before = phase_costs(problem.communicator());
+    const MPI_Comm   comm   = problem.communicator();
+    const PhaseCosts before = phase_costs(comm);
     SolverReport     report;
     if (!condensation)
       {
-        const PhaseScope phase(problem.communicator(),
-                               SolverPhase::matrix_updates);
+        const PhaseScope phase(comm, SolverPhase::matrix_updates);
         condensation =
           std::make_unique<Condensation<dim>>(*matrix, *tree, is_held);
-        has_failed = true_on_any_process(!condensation->factorize(),
-                                         problem.communicator());
+        has_failed = true_on_any_process(!condensation->factorize(), comm);
       }
     if (has_failed)
       {
@@ -314,8 +299,8 @@ namespace Friction
         flags.push_back(x.state.in_contact(p) + 2 * x.state.sticks(p));
         normal_forces.push_back(x.state.normal_force(p));
       }
-    flags         = gather(flags);
-    normal_forces = gather(normal_forces);
+    flags         = gather_from_all(flags, comm);
+    normal_forces = gather_from_all(normal_forces, comm);
     ContactState state(small->contact.size(), x.state.has_friction());
     for (unsigned int p = 0; p < state.size(); ++p)
       {
@@ -338,8 +323,7 @@ namespace Friction
     CoulombSettings        its_limits(limits);
     its_limits.certificate_tolerance = std::numeric_limits<double>::infinity();
 
-    const bool is_first =
-      Utilities::MPI::this_mpi_process(problem.communicator()) == 0;
+    const bool is_first      = Utilities::MPI::this_mpi_process(comm) == 0;
     bool       has_converged = false;
     VectorType residual(x.u), image(small->u), start(small->u);
     for (unsigned int pass = 0; pass < passes; ++pass)
@@ -347,8 +331,10 @@ namespace Friction
         // What is left over at all nodes, condensed: S (u_c - start) is to be
         // this and the contact forces.
         problem.stiffness.residual(residual, problem.forces, x.u);
-        std::vector<double> values = gather(std::vector<double>(
-          residual.begin(), residual.begin() + residual.locally_owned_size()));
+        std::vector<double> values = gather_from_all(
+          std::vector<double>(residual.begin(),
+                              residual.begin() + residual.locally_owned_size()),
+          comm);
         condensation->reduce(values);
         start = small->u;
         small->stiffness.vmult(image, start);
@@ -361,7 +347,7 @@ namespace Friction
         // all pay for it.
         const std::vector<CycleInfo> earlier = report.cycles;
         {
-          const PhaseScope phase(problem.communicator(), SolverPhase::coarsest);
+          const PhaseScope phase(comm, SolverPhase::coarsest);
           if (is_first)
             report = CoulombSolver<dim>(iteration, its_limits)
                        .solve(small->u, state, progress);
@@ -405,7 +391,7 @@ namespace Friction
           break;
       }
     report.converged     = has_converged;
-    report.costs         = phase_costs(problem.communicator()) - before;
+    report.costs         = phase_costs(comm) - before;
     report.matrix_memory = problem.stiffness.memory_consumption();
     report.solver_memory = memory_consumption() +
       small->stiffness.memory_consumption() + smoother.memory_consumption() +

@@ -90,9 +90,6 @@ namespace Friction
     void share(SolverReport &report, VectorType &u, ContactState &state) const;
 
     unsigned int first_of_own_contact_nodes() const;
-
-    template <typename Value>
-    std::vector<Value> gather(const std::vector<Value> &own) const;
   };
 } // namespace Friction
 

@@ -1,5 +1,6 @@
 #include <common/discretization/held_body.h>
 #include <common/input_error.h>
+#include <common/parallel/reductions.h>
 #include <common/scene/rigid_motions.h>
 
 #include <deal.II/base/geometry_info.h>
@@ -219,10 +220,8 @@ namespace Friction
                     displacements.push_back(sum);
                   }
               }
-            std::vector<double> of_all;
-            for (const auto &some :
-                 Utilities::MPI::all_gather(communicator, displacements))
-              of_all.insert(of_all.end(), some.begin(), some.end());
+            const std::vector<double> of_all =
+              gather_from_all(displacements, communicator);
             const Eigen::MatrixXd contact = Eigen::Map<const Eigen::MatrixXd>(
               of_all.data(), k, of_all.size() / k);
 

@@ -93,6 +93,8 @@ namespace Friction
     for (const unsigned int i : nodes)
       values.push_back(positions[i][along]);
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    if (!(*low < *high))
+      return {};
     // Nodes of a plane of the mesh stay together, but for rounding.
     const double rounding = 1e-9 * (*high - *low);
     std::nth_element(

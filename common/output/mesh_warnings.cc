@@ -3,14 +3,11 @@
 #include <common/scene/rigid_motions.h>
 #include <common/scene/seams.h>
 
-#include <deal.II/base/numbers.h>
 #include <deal.II/base/quadrature_lib.h>
 
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
 
-#include <algorithm>
-#include <cmath>
 #include <map>
 
 namespace Friction
@@ -95,9 +92,7 @@ namespace Friction
     for (const auto &[vertex, list] : normals)
       for (const auto &a : list)
         {
-          const double here =
-            std::acos(std::max(-1., std::min(1., a * list.front()))) * 180. /
-            numbers::PI;
+          const double here = angle_between(a, list.front());
           if (here < smallest_corner && here > angle)
             {
               angle = here;

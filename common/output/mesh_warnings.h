@@ -3,11 +3,24 @@
 
 #include <common/scene/scene.h>
 
+#include <deal.II/base/numbers.h>
+#include <deal.II/base/tensor.h>
+
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
 namespace Friction
 {
+  /** The angle between two directions of length one, in degrees. */
+  template <int dim>
+  double
+  angle_between(const Tensor<1, dim> &a, const Tensor<1, dim> &b)
+  {
+    return std::acos(std::max(-1., std::min(1., a * b))) * 180. / numbers::PI;
+  }
+
   /*
    * What is no error of a coarse mesh, but hardly what its user wanted. The
    * coarse mesh is known to all processes, which find the same sentences.

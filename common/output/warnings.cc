@@ -4,7 +4,6 @@
 #include <common/printable.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/numbers.h>
 
 #include <algorithm>
 #include <array>
@@ -33,15 +32,6 @@ namespace Friction
 
     // Of a boundary that is not to touch the obstacle, relative to the body.
     constexpr double visible_depth = 1e-3;
-
-
-
-    double
-    degrees(const double cosine)
-    {
-      return std::acos(std::max(-1., std::min(1., cosine))) * 180. /
-        numbers::PI;
-    }
 
 
 
@@ -91,6 +81,27 @@ namespace Friction
 
 
 
+    // Of each region, with what is in none as the first one, all processes'.
+    template <int dim>
+    std::vector<unsigned int>
+    n_cells_of_regions(const Discretization<dim> &discretization)
+    {
+      const Materials<dim>     &materials = discretization.scene().materials();
+      const Triangulation<dim> &mesh =
+        discretization.dof_handler().get_triangulation();
+      if (materials.is_homogeneous())
+        return {static_cast<unsigned int>(mesh.n_global_active_cells())};
+      std::vector<unsigned int> n_cells(materials.of_regions().size(), 0);
+      for (const auto &cell : mesh.active_cell_iterators())
+        if (cell->is_locally_owned())
+          ++n_cells[materials.region(cell)];
+      for (unsigned int &n : n_cells)
+        n = Utilities::MPI::sum(n, discretization.constraints().communicator());
+      return n_cells;
+    }
+
+
+
     // Of the materials that cells have. Up to a ratio of 0.49 bilinear elements
     // are too stiff, but not by far. A stiffness has some fifteen digits: those
     // of a soft part get lost where it is added to that of a stiff one.
@@ -102,24 +113,19 @@ namespace Friction
       constexpr double      locking = .49 + 1e-10, far_apart = 1e10;
       const Materials<dim> &materials = discretization.scene().materials();
       double                largest = 0, stiffest = 0, softness = 0;
-      for (const auto &cell : discretization.dof_handler()
-                                .get_triangulation()
-                                .active_cell_iterators())
-        if (cell->is_locally_owned())
+      const std::vector<unsigned int> n_cells =
+        n_cells_of_regions(discretization);
+      for (unsigned int i = 0; i < n_cells.size(); ++i)
+        if (n_cells[i] > 0)
           {
-            const Material &material =
-              materials.of_regions()[materials.region(cell)];
-            stiffest = std::max(stiffest, material.mu());
-            softness = std::max(softness, 1. / material.mu());
+            const Material &material = materials.of_regions()[i];
+            stiffest                 = std::max(stiffest, material.mu());
+            softness                 = std::max(softness, 1. / material.mu());
             if (material.volumetric_strain() == VolumetricStrain::pointwise)
               largest = std::max(largest,
                                  material.lambda() /
                                    (2. * (material.lambda() + material.mu())));
           }
-      const MPI_Comm comm = discretization.constraints().communicator();
-      largest             = Utilities::MPI::max(largest, comm);
-      stiffest            = Utilities::MPI::max(stiffest, comm);
-      softness            = Utilities::MPI::max(softness, comm);
       if (largest > locking)
         warnings.push_back(
           "Warning: with a Poisson ratio of " + number(largest, 6) +
@@ -346,19 +352,11 @@ namespace Friction
   warnings_about_regions(const Discretization<dim> &discretization,
                          const std::string         &which_mesh)
   {
-    std::vector<std::string> warnings;
-    const Materials<dim>    &materials = discretization.scene().materials();
-    if (materials.is_homogeneous())
-      return warnings;
-    std::vector<unsigned int> n_cells(materials.of_regions().size(), 0);
-    for (const auto &cell : discretization.dof_handler()
-                              .get_triangulation()
-                              .active_cell_iterators())
-      if (cell->is_locally_owned())
-        ++n_cells[materials.region(cell)];
+    std::vector<std::string>        warnings;
+    const std::vector<unsigned int> n_cells =
+      n_cells_of_regions(discretization);
     for (unsigned int i = 1; i < n_cells.size(); ++i)
-      if (Utilities::MPI::sum(n_cells[i],
-                              discretization.constraints().communicator()) == 0)
+      if (n_cells[i] == 0)
         warnings.push_back(
           "Warning: no cell of the " + which_mesh +
           " mesh has the material of region " + std::to_string(i) +
@@ -471,10 +469,11 @@ namespace Friction
         if (obstacle.empty())
           continue;
         if (condition.normal == ContactNormal::body)
-          boundary.angle = std::max(
-            boundary.angle,
-            degrees(contact[p].normal() *
-                    obstacle.normal(contact[p].point, contact[p].normal())));
+          boundary.angle =
+            std::max(boundary.angle,
+                     angle_between(
+                       contact[p].normal(),
+                       obstacle.normal(contact[p].point, contact[p].normal())));
         const Point<dim> moved = contact[p].point + u;
         const double     distance =
           obstacle.gap(moved, obstacle.normal(moved, contact[p].normal()));

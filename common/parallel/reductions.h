@@ -74,6 +74,21 @@ namespace Friction
     return value;
   }
 
+  /** What all processes have, on all of them, in the order of their ranks. */
+  template <typename Value>
+  std::vector<Value>
+  gather_from_all(const std::vector<Value> &own, const MPI_Comm comm)
+  {
+    // A process by itself need not pack its values in order to keep them.
+    if (dealii::Utilities::MPI::n_mpi_processes(comm) == 1)
+      return own;
+    std::vector<Value> all;
+    for (const std::vector<Value> &part :
+         dealii::Utilities::MPI::all_gather(comm, own))
+      all.insert(all.end(), part.begin(), part.end());
+    return all;
+  }
+
   /** Whether it is true on any process. */
   inline bool
   true_on_any_process(const bool value, const MPI_Comm comm)

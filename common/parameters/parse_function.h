@@ -2,6 +2,7 @@
 #define friction_parameters_parse_function_h
 
 #include <common/parameters/parameters.h>
+#include <common/parameters/scene_file.h>
 #include <common/parameters/wrong_number.h>
 #include <common/printable.h>
 
@@ -90,22 +91,12 @@ namespace Friction
   inline void
   check_is_repeatable(const std::string &expression, const std::string &where)
   {
-    const std::string letters =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
-    for (std::size_t i = expression.find("rand"); i != std::string::npos;
-         i             = expression.find("rand", i + 4))
-      {
-                    const bool begins =
-                      i == 0 || letters.find(expression[i - 1]) == std::string::npos;
-                    const std::string word =
-                      expression.substr(i, expression.find_first_not_of(letters, i) - i);
-                    if (begins && (word == "rand" || word == "rand_seed"))
-          throw InputError(where + ": '" + excerpt(expression) +
-                           "' is at random, another number each time that it "
-                                       "is computed, so that there is nothing to solve; "
-                                       "write a function of the place, as "
-                                       "'sin(1e4*x)'.");
-      }
+    for (const std::string word : {"rand", "rand_seed"})
+      if (n_uses(expression, word) > 0)
+        throw InputError(where + ": '" + excerpt(expression) +
+                         "' is at random, another number each time that it is "
+                         "computed, so that there is nothing to solve; write a "
+                         "function of the place, as 'sin(1e4*x)'.");
   }
 
   /**

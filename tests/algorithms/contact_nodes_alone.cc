@@ -111,6 +111,17 @@ namespace
 
 
 
+  template <int dim>
+  Parameters
+  block_scene(const std::vector<std::string> &entries)
+  {
+    return read_parameters((dim == 2 ? SCENES_DIR "/" : SCENES_3D_DIR "/") +
+                             std::string("block.prm"),
+                           entries);
+  }
+
+
+
   // Histories, in which slip has its origin where the load step before ended,
   // with sides that are held in one direction where they meet contact, and with
   // a force that a platen has to find its place for: the same with and without
@@ -135,10 +146,7 @@ namespace
       {
         entries.push_back(std::string("Solver/Condensation=") +
                           (condensation ? "true" : "false"));
-        NestedIteration<dim> nest(
-          read_parameters((dim == 2 ? SCENES_DIR "/" : SCENES_3D_DIR "/") +
-                            std::string("block.prm"),
-                          entries));
+        NestedIteration<dim> nest(block_scene<dim>(entries));
         nest.begin();
         do
           {
@@ -182,10 +190,7 @@ namespace
       entry};
     if (!other.empty())
       entries.push_back(other);
-    NestedIteration<dim> nest(
-      read_parameters((dim == 2 ? SCENES_DIR "/" : SCENES_3D_DIR "/") +
-                        std::string("block.prm"),
-                      entries));
+    NestedIteration<dim> nest(block_scene<dim>(entries));
     nest.begin();
     nest.solve();
     const SolverReport &report           = nest.report();
