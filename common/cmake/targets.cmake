@@ -1,7 +1,7 @@
 # Targets that are set up alike: with deal.II's flags and headers, and with what
 # most files include, parsed beforehand.
 option(FRICTION_PRECOMPILED_HEADERS
-  "Parse the headers of deal.II once and not in each file: a build in 60 % of the time, for 800 MB of disk"
+  "Parse the headers of deal.II once and not in each file: a build in 60 % of the time, for 850 MB of disk"
   ON)
 
 # friction_precompile(target library): the target takes the headers that were parsed

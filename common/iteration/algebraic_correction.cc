@@ -2,6 +2,7 @@
 #include <common/parallel/reductions.h>
 
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <algorithm>
 
@@ -36,7 +37,8 @@ namespace Friction
                 row,
                 partitioner.local_to_global(dim * leaf_matrix.column(e) + c));
         }
-    matrix.reinit(owned, owned, pattern, comm);
+    matrix = std::make_unique<TrilinosWrappers::SparseMatrix>();
+    matrix->reinit(owned, owned, pattern, comm);
 
     for (unsigned int i = 0; i < leaf_matrix.n_rows(); ++i)
       if (leaf_matrix.row_begin(i) != leaf_matrix.row_end(i))
@@ -46,6 +48,11 @@ namespace Friction
     if (scale == 0)
       scale = 1.;
   }
+
+
+
+  template <int dim>
+  AlgebraicCorrection<dim>::~AlgebraicCorrection() = default;
 
 
 
@@ -82,7 +89,7 @@ namespace Friction
         const bool empty = leaf_matrix.row_begin(i) == leaf_matrix.row_end(i);
         if (empty)
           for (unsigned int d = 0; d < dim; ++d)
-            matrix.set(dof(i, d), dof(i, d), scale);
+            matrix->set(dof(i, d), dof(i, d), scale);
         for (std::size_t e = leaf_matrix.row_begin(i);
              e < leaf_matrix.row_end(i);
              ++e)
@@ -97,11 +104,11 @@ namespace Friction
                     ((r == c ? 1. : 0.) - current.projector(i)[c * dim + r]);
             for (unsigned int c = 0; c < dim; ++c)
               for (unsigned int r = 0; r < dim; ++r)
-                matrix.set(dof(i, r), dof(j, c), block[c * dim + r]);
+                matrix->set(dof(i, r), dof(j, c), block[c * dim + r]);
           }
       }
-    matrix.compress(VectorOperation::insert);
-    solver.initialize(matrix);
+    matrix->compress(VectorOperation::insert);
+    solver.initialize(*matrix);
     is_filled = true;
   }
 
@@ -124,7 +131,7 @@ namespace Friction
   std::size_t
   AlgebraicCorrection<dim>::memory_consumption() const
   {
-    return matrix.memory_consumption();
+    return matrix->memory_consumption();
   }
 
 

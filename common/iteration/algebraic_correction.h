@@ -4,7 +4,7 @@
 #include <common/iteration/correction.h>
 #include <common/levels/algebraic_solver.h>
 
-#include <deal.II/lac/trilinos_sparse_matrix.h>
+#include <memory>
 
 namespace Friction
 {
@@ -27,6 +27,7 @@ namespace Friction
     AlgebraicCorrection(const DiscreteProblem<dim> &problem,
                         const CoarsestMethod        method);
     AlgebraicCorrection(DiscreteProblem<dim> &&, const CoarsestMethod) = delete;
+    ~AlgebraicCorrection() override;
 
     void update(const Linearization<dim> &linearization,
                 const Iterate            &x) override;
@@ -37,13 +38,13 @@ namespace Friction
     std::size_t memory_consumption() const override;
 
   private:
-    const DiscreteProblem<dim>    &problem;
-    Truncation<dim>                current;
-    TrilinosWrappers::SparseMatrix matrix;
-    AlgebraicSolver                solver;
-    VectorType                     rhs, solution;
-    double                         scale     = 0.;
-    bool                           is_filled = false;
+    const DiscreteProblem<dim>                     &problem;
+    Truncation<dim>                                 current;
+    std::unique_ptr<TrilinosWrappers::SparseMatrix> matrix;
+    AlgebraicSolver                                 solver;
+    VectorType                                      rhs, solution;
+    double                                          scale     = 0.;
+    bool                                            is_filled = false;
 
     void fill();
   };

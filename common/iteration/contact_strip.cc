@@ -2,6 +2,9 @@
 #include <common/parallel/reductions.h>
 #include <common/parallel/run_clock.h>
 
+#include <deal.II/lac/trilinos_solver.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -29,6 +32,11 @@ namespace Friction
     for (unsigned int p = 0; p < problem.contact.size(); ++p)
       contact_node[problem.contact[p].node] = p;
   }
+
+
+
+  template <int dim>
+  ContactStrip<dim>::~ContactStrip() = default;
 
 
 

@@ -2,11 +2,10 @@
 #define friction_iteration_contact_strip_h
 
 #include <common/discretization/discrete_problem.h>
+#include <common/levels/trilinos_names.h>
 #include <common/nodes/truncation.h>
 
 #include <deal.II/lac/solver_control.h>
-#include <deal.II/lac/trilinos_solver.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <array>
 #include <memory>
@@ -36,6 +35,7 @@ namespace Friction
   public:
     /** @p problem is kept by reference. */
     explicit ContactStrip(const DiscreteProblem<dim> &problem);
+    ~ContactStrip();
 
     /**
      * Finds the strip and factorises its matrix. Collective.
@@ -79,8 +79,8 @@ namespace Friction
     VectorType                                      rhs, solution;
 
     // Of the rows that are being computed.
-    std::vector<types::global_dof_index>         columns;
-    std::array<std::vector<TrilinosScalar>, dim> rows;
+    std::vector<types::global_dof_index> columns;
+    std::array<std::vector<double>, dim> rows;
 
     void find_nodes(const std::vector<NodeValue<dim>> &slopes,
                     const unsigned int                 n_layers);

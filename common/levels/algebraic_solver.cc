@@ -5,6 +5,10 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <deal.II/lac/trilinos_precondition.h>
+#include <deal.II/lac/trilinos_solver.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -33,7 +37,13 @@ namespace Friction
     : method(method)
     , n_components(n_components)
     , control(1, 0.)
+    , shifted_matrix(std::make_unique<TrilinosWrappers::SparseMatrix>())
+    , hierarchy_matrix(std::make_unique<TrilinosWrappers::SparseMatrix>())
   {}
+
+
+
+  AlgebraicSolver::~AlgebraicSolver() = default;
 
 
 
@@ -99,11 +109,11 @@ namespace Friction
         for (const auto i : owned)
           largest = std::max(largest, matrix->diag_element(i));
         largest = Utilities::MPI::max(largest, comm);
-        shifted_matrix.copy_from(*matrix);
+        shifted_matrix->copy_from(*matrix);
         for (const auto i : owned)
-          shifted_matrix.add(i, i, 1e-10 * largest);
-        shifted_matrix.compress(VectorOperation::add);
-        factorize_matrix(shifted_matrix);
+          shifted_matrix->add(i, i, 1e-10 * largest);
+        shifted_matrix->compress(VectorOperation::add);
+        factorize_matrix(*shifted_matrix);
       }
     is_current = true;
     ++setups;
@@ -132,9 +142,9 @@ namespace Friction
     for (types::global_dof_index l = 0; l < owned.n_elements(); ++l)
       data.constant_modes[owned.nth_index_in_set(l) % n_components][l] = true;
 
-    hierarchy_matrix.copy_from(*matrix);
+    hierarchy_matrix->copy_from(*matrix);
     hierarchy = std::make_unique<TrilinosWrappers::PreconditionAMG>();
-    hierarchy->initialize(hierarchy_matrix, data);
+    hierarchy->initialize(*hierarchy_matrix, data);
     is_current     = true;
     new_iterations = 0;
     ++setups;

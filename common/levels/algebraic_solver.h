@@ -1,13 +1,11 @@
 #ifndef friction_levels_algebraic_solver_h
 #define friction_levels_algebraic_solver_h
 
+#include <common/levels/trilinos_names.h>
 #include <common/nodes/nodal_constraints.h>
 #include <common/parameters/solver_settings.h>
 
 #include <deal.II/lac/solver_control.h>
-#include <deal.II/lac/trilinos_precondition.h>
-#include <deal.II/lac/trilinos_solver.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <functional>
 #include <memory>
@@ -66,6 +64,7 @@ namespace Friction
      */
     AlgebraicSolver(const CoarsestMethod method,
                     const unsigned int   n_components);
+    ~AlgebraicSolver();
 
     /**
      * Is told the matrix for the calls of solve() that follow, and again
@@ -122,10 +121,10 @@ namespace Friction
     // The factorisation, and the matrix it belongs to if that is not the given
     // one.
     SolverControl                                   control;
-    TrilinosWrappers::SparseMatrix                  shifted_matrix;
+    std::unique_ptr<TrilinosWrappers::SparseMatrix> shifted_matrix;
     std::unique_ptr<TrilinosWrappers::SolverDirect> factorization;
 
-    TrilinosWrappers::SparseMatrix                     hierarchy_matrix;
+    std::unique_ptr<TrilinosWrappers::SparseMatrix>    hierarchy_matrix;
     std::unique_ptr<TrilinosWrappers::PreconditionAMG> hierarchy;
 
     // Whether elimination of many unknowns is cheap; found out at the first

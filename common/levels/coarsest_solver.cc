@@ -2,6 +2,7 @@
 #include <common/parallel/reductions.h>
 
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <algorithm>
 
@@ -34,9 +35,15 @@ namespace Friction
             for (unsigned int c = 0; c < dim; ++c)
               pattern.add(dof(i, r), dof(B.column(e), c));
         }
-    matrix.reinit(owned, owned, pattern, nodes.communicator());
+    matrix = std::make_unique<TrilinosWrappers::SparseMatrix>();
+    matrix->reinit(owned, owned, pattern, nodes.communicator());
     set_up();
   }
+
+
+
+  template <int dim>
+  CoarsestSolver<dim>::~CoarsestSolver() = default;
 
 
 
@@ -87,18 +94,18 @@ namespace Friction
             block = times<dim>(times<dim>(Mi, block), complements[j]);
             for (unsigned int c = 0; c < dim; ++c)
               for (unsigned int r = 0; r < dim; ++r)
-                matrix.set(dof(i, r),
-                           dof(j, c),
-                           block[c * dim + r] +
-                             (i == j ? scale * nulls[i][c * dim + r] : 0.));
+                matrix->set(dof(i, r),
+                            dof(j, c),
+                            block[c * dim + r] +
+                              (i == j ? scale * nulls[i][c * dim + r] : 0.));
           }
         if (empty_row)
           for (unsigned int r = 0; r < dim; ++r)
-            matrix.set(dof(i, r), dof(i, r), scale);
+            matrix->set(dof(i, r), dof(i, r), scale);
       }
-    matrix.compress(VectorOperation::insert);
+    matrix->compress(VectorOperation::insert);
 
-    solver.initialize(matrix);
+    solver.initialize(*matrix);
     version = level_matrices.coarsest_version();
   }
 

@@ -7,8 +7,8 @@
 #include <common/parallel/ghost_exchange.h>
 
 #include <deal.II/lac/la_parallel_vector.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
 
+#include <memory>
 #include <vector>
 
 namespace Friction
@@ -29,6 +29,7 @@ namespace Friction
     CoarsestSolver(const LevelHierarchy<dim> &hierarchy,
                    const LevelMatrices<dim>  &level_matrices,
                    const CoarsestMethod       method);
+    ~CoarsestSolver();
 
     /** c = B_0^{-1} r at the nodes that the process owns, with zero in all
      * directions that cannot move. Collective. */
@@ -51,13 +52,13 @@ namespace Friction
     }
 
   private:
-    const LevelHierarchy<dim>     &hierarchy;
-    const LevelMatrices<dim>      &level_matrices;
-    TrilinosWrappers::SparseMatrix matrix;
-    AlgebraicSolver                solver;
-    GhostExchange                  ghosts;
-    VectorType                     rhs, solution;
-    unsigned int                   version = 0;
+    const LevelHierarchy<dim>                      &hierarchy;
+    const LevelMatrices<dim>                       &level_matrices;
+    std::unique_ptr<TrilinosWrappers::SparseMatrix> matrix;
+    AlgebraicSolver                                 solver;
+    GhostExchange                                   ghosts;
+    VectorType                                      rhs, solution;
+    unsigned int                                    version = 0;
 
     void set_up();
 

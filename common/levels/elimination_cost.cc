@@ -3,6 +3,8 @@
 #include <deal.II/base/index_set.h>
 #include <deal.II/base/mpi.h>
 
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
 #include <vector>
 
 namespace Friction

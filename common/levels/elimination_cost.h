@@ -1,7 +1,7 @@
 #ifndef friction_levels_elimination_cost_h
 #define friction_levels_elimination_cost_h
 
-#include <deal.II/lac/trilinos_sparse_matrix.h>
+#include <common/levels/trilinos_names.h>
 
 namespace Friction
 {

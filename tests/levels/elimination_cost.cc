@@ -13,6 +13,7 @@
 #include <common/levels/elimination_cost.h>
 
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <tests/support/check.h>
 #include <tests/support/random.h>
