@@ -2,10 +2,9 @@
 #include <common/algorithms/initial_guess.h>
 #include <common/contact/contact_forces.h>
 #include <common/contact/force_balance.h>
+#include <common/dense_algebra.h>
 #include <common/parallel/reductions.h>
 #include <common/parameters/wrong_number.h>
-
-#include <Eigen/Dense>
 
 #include <algorithm>
 #include <array>
@@ -251,7 +250,7 @@ namespace Friction
         stiffness.col(j) =
           sums_over(dofs, Ae, discretization.constraints().communicator());
       }
-    compliance = stiffness.inverse();
+    compliance = inverse(stiffness);
   }
 
 

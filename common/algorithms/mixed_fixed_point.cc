@@ -104,7 +104,7 @@ namespace Friction
           products.push_back(share(changes[i], changes[j]));
       }
     sum_over_processes(products, communicator);
-    std::vector<double> coefficients = best_combination(products, n, 1e-12);
+    std::vector<double> coefficients = best_combination(products, n);
     coefficients.resize(n, 0.);
 
     for (std::size_t i = 0; i < point.size(); ++i)

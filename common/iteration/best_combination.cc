@@ -1,15 +1,12 @@
+#include <common/dense_algebra.h>
 #include <common/iteration/best_combination.h>
-
-#include <Eigen/Dense>
 
 #include <cmath>
 
 namespace Friction
 {
   std::vector<double>
-  best_combination(const std::vector<double> &products,
-                   const unsigned int         n,
-                   const double               threshold)
+  best_combination(const std::vector<double> &products, const unsigned int n)
   {
     Eigen::MatrixXd gram(n, n);
     Eigen::VectorXd rhs(n), scale(n);
@@ -26,11 +23,9 @@ namespace Friction
 
     // Scaled to a unit diagonal; what depends on the others is left out by the
     // pivoted factorisation.
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(scale.asDiagonal() * gram *
-                                                   scale.asDiagonal());
-    qr.setThreshold(threshold);
-    const Eigen::VectorXd coefficients =
-      scale.asDiagonal() * qr.solve(scale.asDiagonal() * rhs);
+    const Eigen::VectorXd coefficients = scale.asDiagonal() *
+      least_squares(scale.asDiagonal() * gram * scale.asDiagonal(),
+                    scale.asDiagonal() * rhs);
     if (!coefficients.allFinite())
       return {};
     return {coefficients.data(), coefficients.data() + n};

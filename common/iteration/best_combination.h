@@ -13,15 +13,13 @@ namespace Friction
    * @param products   for each i the product of b_i with x, then those of b_i
    *                   with b_0, ..., b_i: n (n+3) / 2 numbers, which can be
    *                   summed over all processes at once.
-   * @param n          the number of vectors, a few.
-   * @param threshold  vectors that depend on the others up to this relative
-   *                   size have the coefficient zero, and so have vectors of
-   *                   length zero.
+   * @param n          the number of vectors, a few. Those that are sums of
+   *                   others up to rounding have the coefficient zero, and so
+   *                   have vectors of length zero.
    * @return n coefficients, or none where they would not be finite.
    */
   std::vector<double> best_combination(const std::vector<double> &products,
-                                       const unsigned int         n,
-                                       const double               threshold);
+                                       const unsigned int         n);
 } // namespace Friction
 
 #endif

@@ -142,7 +142,7 @@ namespace Friction
     // A direction without energy, like a correction from coarse levels on which
     // nothing can move, is left out.
     const std::vector<double> coefficients =
-      best_combination(products_of_all, n, 1e-10);
+      best_combination(products_of_all, n);
     if (coefficients.empty())
       return 0;
 

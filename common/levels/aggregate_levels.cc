@@ -1,7 +1,6 @@
+#include <common/dense_algebra.h>
 #include <common/levels/aggregate_levels.h>
 #include <common/parallel/reductions.h>
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -138,15 +137,14 @@ namespace Friction
       for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i)
           a(i, j) *= s[i] * s[j];
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a);
-      const Eigen::MatrixXd &vectors = solver.eigenvectors();
+      const Eigenpairs eigen = eigenpairs(a);
       a.setZero();
       for (int k = 0; k < n; ++k)
-        if (solver.eigenvalues()[k] > relative_cut)
+        if (eigen.values[k] > relative_cut)
           for (int j = 0; j < n; ++j)
             for (int i = 0; i < n; ++i)
               a(i, j) +=
-                vectors(i, k) * vectors(j, k) / solver.eigenvalues()[k];
+                eigen.vectors(i, k) * eigen.vectors(j, k) / eigen.values[k];
       for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i)
           a(i, j) *= s[i] * s[j];

@@ -1,6 +1,5 @@
+#include <common/dense_algebra.h>
 #include <common/nodes/interface_damping.h>
-
-#include <Eigen/Dense>
 
 namespace Friction
 {
@@ -46,13 +45,8 @@ namespace Friction
     Matrix<dim> majorant = Matrix<dim>::Zero();
     for (std::size_t e = A.row_begin(row); e < A.row_end(row); ++e)
       if (A.column(e) >= A.n_rows())
-        {
-          const Eigen::JacobiSVD<Matrix<dim>> svd(
-            Matrix<dim>(Eigen::Map<const Matrix<dim>>(A.block(e))),
-            Eigen::ComputeFullU);
-          majorant += svd.matrixU() * svd.singularValues().asDiagonal() *
-            svd.matrixU().transpose();
-        }
+        majorant +=
+          left_absolute_value(Eigen::Map<const Matrix<dim>>(A.block(e)));
     return symmetric_block<dim>(majorant);
   }
 
@@ -68,13 +62,15 @@ namespace Friction
     const NodeBlock<dim> majorant = interface_majorant(A, row);
     const Matrix<dim> lacking = Eigen::Map<const Matrix<dim>>(majorant.data()) -
       (1. - remains) * Eigen::Map<const Matrix<dim>>(A.block(A.row_begin(row)));
-    const Eigen::SelfAdjointEigenSolver<Matrix<dim>> eigen(
-      Matrix<dim>(.5 * (lacking + lacking.transpose())));
-    if (!(eigen.eigenvalues().maxCoeff() > 0))
-      return zero_block<dim>();
-    return symmetric_block<dim>(.5 * eigen.eigenvectors() *
-                                eigen.eigenvalues().cwiseMax(0.).asDiagonal() *
-                                eigen.eigenvectors().transpose());
+    const Eigenpairs eigen = eigenpairs(.5 * (lacking + lacking.transpose()));
+    Matrix<dim>      positive = Matrix<dim>::Zero();
+    for (int d = 0; d < dim; ++d)
+      if (eigen.values[d] > 0.)
+        {
+          const Eigen::Matrix<double, dim, 1> v = eigen.vectors.col(d);
+          positive += .5 * eigen.values[d] * v * v.transpose();
+        }
+    return symmetric_block<dim>(positive);
   }
 
 

@@ -1,6 +1,6 @@
+#include <common/dense_algebra.h>
 #include <common/nodes/node_block.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -33,14 +33,13 @@ namespace Friction
         return result;
       }
 
-    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(matrix);
-
-    Matrix inverse = Matrix::Zero(), null = Matrix::Zero();
+    const Eigenpairs eigen   = eigenpairs(matrix);
+    Matrix           inverse = Matrix::Zero(), null = Matrix::Zero();
     for (int d = 0; d < dim; ++d)
       {
-        const auto v = eigen.eigenvectors().col(d);
-        if (eigen.eigenvalues()(d) > cut)
-          inverse += v * v.transpose() / eigen.eigenvalues()(d);
+        const Eigen::Matrix<double, dim, 1> v = eigen.vectors.col(d);
+        if (eigen.values[d] > cut)
+          inverse += v * v.transpose() / eigen.values[d];
         else
           null += v * v.transpose();
       }

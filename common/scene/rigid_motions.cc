@@ -1,9 +1,7 @@
+#include <common/dense_algebra.h>
 #include <common/input_error.h>
 #include <common/printable.h>
 #include <common/scene/rigid_motions.h>
-
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -190,9 +188,8 @@ namespace Friction
               Eigen::MatrixXd columns(contact.rows(), active.size());
               for (unsigned int i = 0; i < active.size(); ++i)
                 columns.col(i) = contact.col(active[i]);
-              const Eigen::VectorXd wanted =
-                columns.colPivHouseholderQr().solve(loads);
-              double way = 1.;
+              const Eigen::VectorXd wanted = least_squares(columns, loads);
+              double                way    = 1.;
               for (unsigned int i = 0; i < active.size(); ++i)
                 if (wanted[i] <= 0.)
                   way = std::min(
@@ -431,13 +428,12 @@ namespace Friction
     std::pair<unsigned int, Eigen::MatrixXd>
     free_motions(const Eigen::MatrixXd &equations)
     {
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(equations);
-      const Eigen::VectorXd &values = eigen.eigenvalues();
-      unsigned int           n_free = 0;
+      const auto [values, vectors] = eigenpairs(equations);
+      unsigned int n_free          = 0;
       while (n_free < n_motions<dim> &&
              values[n_free] <= 1e-10 * std::max(1., values[n_motions<dim> - 1]))
         ++n_free;
-      return {n_free, eigen.eigenvectors()};
+      return {n_free, vectors};
     }
 
 
