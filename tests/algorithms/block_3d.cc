@@ -10,7 +10,7 @@
 
 #include <tests/support/check.h>
 
-#include "../reference/scenes_3d.h"
+#include <tests/reference/solutions/scenes_3d.h>
 #include <tests/support/discretized.h>
 
 using namespace Tests;

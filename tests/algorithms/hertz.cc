@@ -8,7 +8,7 @@
 
 #include <tests/support/check.h>
 
-#include "../reference/half_plane_contact.h"
+#include <tests/reference/solutions/half_plane_contact.h>
 #include <tests/support/discretized.h>
 
 using namespace Tests;

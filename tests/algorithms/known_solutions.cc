@@ -13,7 +13,7 @@
 
 #include <tests/support/check.h>
 
-#include "../reference/scenes.h"
+#include <tests/reference/solutions/scenes.h>
 #include <tests/support/discretized.h>
 
 using namespace Tests;

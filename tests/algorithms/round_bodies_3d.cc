@@ -12,7 +12,7 @@
 
 #include <tests/support/check.h>
 
-#include "../reference/dense_contact_3d.h"
+#include <tests/reference/solutions/dense_contact_3d.h>
 #include <tests/support/discretized.h>
 
 using namespace Tests;

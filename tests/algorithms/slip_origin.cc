@@ -25,7 +25,7 @@
 
 #include <tests/support/check.h>
 
-#include "../reference/dense_contact.h"
+#include <tests/reference/solutions/dense_contact.h>
 #include <tests/support/discretized.h>
 
 using namespace Tests;
@@ -329,9 +329,8 @@ namespace
         Reference::ContactProblem problem = dense_problem(d, F);
         if (n == 0)
           before = Eigen::VectorXd::Zero(2 * problem.mesh.nodes.size());
-        problem.forces = -(
-          Reference::internal::stiffness(problem.mesh, problem.poisson_ratio) *
-          before);
+        problem.forces =
+          -(Reference::stiffness(problem.mesh, problem.poisson_ratio) * before);
         for (auto &value : problem.dirichlet)
           value.value -= before[2 * value.node + value.component];
         for (auto &p : problem.contact)

@@ -21,13 +21,13 @@
 
 #include <common/iteration/monotone_correction.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/Sparse>
+#include <Eigen/SparseCore>
 
 #include <iostream>
 #include <limits>
 
 #include <tests/support/check.h>
+#include <tests/support/dense.h>
 #include <tests/support/random_problem.h>
 
 using namespace Tests;
@@ -65,32 +65,20 @@ namespace
     std::vector<Eigen::VectorXd> columns;
     for (unsigned int i = 0; i < n_nodes; ++i)
       {
-        // Small as it is, a size of its own would cost the compiler seconds.
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-          Eigen::Map<const Eigen::MatrixXd>(
-            truncation.projector(i).data(), dim, dim));
-        for (unsigned int d = 0; d < dim; ++d)
-          if (eigen.eigenvalues()(d) > .5)
-            {
-              columns.emplace_back(Eigen::VectorXd::Zero(dim * n_nodes));
-              columns.back().segment(dim * i, dim) =
-                eigen.eigenvectors().col(d);
-            }
+        const Eigen::MatrixXd basis =
+          eigenvectors_above(Eigen::Map<const Eigen::MatrixXd>(
+                               truncation.projector(i).data(), dim, dim),
+                             .5);
+        for (unsigned int c = 0; c < basis.cols(); ++c)
+          {
+            columns.emplace_back(Eigen::VectorXd::Zero(dim * n_nodes));
+            columns.back().segment(dim * i, dim) = basis.col(c);
+          }
       }
     Eigen::MatrixXd Z(dim * n_nodes, columns.size());
     for (unsigned int c = 0; c < columns.size(); ++c)
       Z.col(c) = columns[c];
     return Z;
-  }
-
-
-
-  Eigen::MatrixXd
-  reduce(const Eigen::MatrixXd &Z, const Eigen::MatrixXd &A)
-  {
-    const Eigen::SparseMatrix<double> S = Z.sparseView(), B = A.sparseView();
-    return Eigen::SparseMatrix<double>(
-      Eigen::SparseMatrix<double>(S.transpose()) * B * S);
   }
 
 
@@ -162,7 +150,7 @@ namespace
       const auto T_omega =
         to_dense(truncation, problem.constraints().n_nodes());
       A       = to_dense(problem.matrix()) + T_omega.second;
-      reduced = reduce(Z, A);
+      reduced = congruence(Z, A);
     }
 
     const Truncation<dim> &truncation;
@@ -243,9 +231,8 @@ namespace
 
         // The leaf relaxation, one forward sweep: L is the lower triangle of
         // the matrix, node by node.
-        const Eigen::LLT<Eigen::MatrixXd> cholesky(setup.reduced);
-        const Eigen::MatrixXd             factor = cholesky.matrixL();
-        std::vector<unsigned int>         node_of(setup.Z.cols());
+        const Eigen::MatrixXd     factor = cholesky_factor(setup.reduced);
+        std::vector<unsigned int> node_of(setup.Z.cols());
         for (unsigned int c = 0; c < node_of.size(); ++c)
           {
             unsigned int row;
@@ -286,14 +273,13 @@ namespace
 
             // In the coordinates y = L^T x, with A = L L^T, the energy product
             // is the Euclidean one.
-            const Eigen::MatrixXd E = factor.transpose() * C * factor;
-            const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(
-              .5 * (E + E.transpose()), Eigen::EigenvaluesOnly);
-            check(spectrum.eigenvalues().minCoeff() > -1e-10 &&
-                    spectrum.eigenvalues().maxCoeff() < 1 + 1e-10,
+            const Eigen::MatrixXd E = congruence(factor, C);
+            const Eigen::VectorXd spectrum =
+              eigenvalues(.5 * (E + E.transpose()));
+            check(spectrum.minCoeff() > -1e-10 &&
+                    spectrum.maxCoeff() < 1 + 1e-10,
                   which + "spectrum in [0,1]");
-            const unsigned int n_coarse =
-              (spectrum.eigenvalues().array() > 1e-8).count();
+            const unsigned int n_coarse = (spectrum.array() > 1e-8).count();
             // Lines of the leaf mesh are relaxed as well.
             check(n_coarse > 0 && (n_coarse < C.rows() || is_stretched),
                   which + "acts on the coarse functions");
@@ -301,22 +287,21 @@ namespace
             // Error propagation of: sweep, cycle, sweep backwards.
             const Eigen::MatrixXd I =
               Eigen::MatrixXd::Identity(C.rows(), C.rows());
-            const Eigen::MatrixXd S = I - lower.lu().solve(setup.reduced);
-            const Eigen::MatrixXd G = factor.transpose() * S *
-              factor.transpose().triangularView<Eigen::Upper>().solve(I);
-            const Eigen::MatrixXd error = G.transpose() * (I - E) * G;
-            const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> contraction(
-              .5 * (error + error.transpose()), Eigen::EigenvaluesOnly);
-            check(contraction.eigenvalues().minCoeff() > -1e-10,
+            const Eigen::MatrixXd S = I - solve(lower, setup.reduced);
+            const Eigen::MatrixXd G = product(
+              factor.transpose(), product(S, inverse(factor.transpose())));
+            const Eigen::MatrixXd error = congruence(G, I - E);
+            const Eigen::VectorXd contraction =
+              eigenvalues(.5 * (error + error.transpose()));
+            check(contraction.minCoeff() > -1e-10,
                   which + "with leaf sweeps, error not overshot");
-            check_below(contraction.eigenvalues().maxCoeff(),
+            check_below(contraction.maxCoeff(),
                         is_stretched ? .93 : .8,
                         which + "contraction with one leaf sweep each way");
             if (type == Cycle::V)
-              contraction_of_V = contraction.eigenvalues().maxCoeff();
+              contraction_of_V = contraction.maxCoeff();
             else
-              check(contraction.eigenvalues().maxCoeff() <
-                      contraction_of_V - 1e-6,
+              check(contraction.maxCoeff() < contraction_of_V - 1e-6,
                     which + "contracts faster than the V-cycle");
           }
       }
@@ -339,12 +324,8 @@ namespace
     TruncatedCorrection<dim> cycle(levels, Cycle::V, 1);
     levels.update(truncation);
     const Eigen::MatrixXd C = to_dense_operator(cycle, problem, setup.Z);
-    const Eigen::MatrixXd factor =
-      Eigen::LLT<Eigen::MatrixXd>(setup.reduced).matrixL();
     const Eigen::VectorXd spectrum =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
-        factor.transpose() * C * factor, Eigen::EigenvaluesOnly)
-        .eigenvalues();
+      eigenvalues(congruence(cholesky_factor(setup.reduced), C));
     double deviation = 0;
     for (const double value : spectrum)
       deviation =

@@ -16,6 +16,7 @@
 #include <iostream>
 
 #include <tests/support/check.h>
+#include <tests/support/dense.h>
 #include <tests/support/random_problem.h>
 
 using namespace Tests;
@@ -68,7 +69,7 @@ namespace
               W(dim * i + r, dim * i + c) +=
                 truncation.curvature(i)[c * dim + r];
             }
-    return T * W * T;
+    return congruence(T, W); // T is symmetric
   }
 
   // A linear map, column by column.
@@ -119,7 +120,7 @@ namespace
     for (unsigned int k = 0; k < levels.n_levels(); ++k)
       {
         const Eigen::MatrixXd P = prolongation(levels, k, B.rows());
-        B                       = (P.transpose() * B * P).eval();
+        B                       = congruence(P, B);
         wrong = std::max(wrong, (B - matrix(levels, k)).norm() / B.norm());
       }
     return wrong;
@@ -177,14 +178,12 @@ namespace
     for (unsigned int k = 0; k < levels.n_levels(); ++k)
       {
         if (k > 0)
-          P = (P * prolongation(levels, k, P.cols())).eval();
+          P = product(P, prolongation(levels, k, P.cols()));
         Eigen::MatrixXd Q(dim * nodes.size(), P.cols());
         for (unsigned int i = 0; i < nodes.size(); ++i)
           Q.middleRows(dim * i, dim) = P.middleRows(dim * nodes[i], dim);
-        const Eigen::MatrixXd nearest =
-          Q.completeOrthogonalDecomposition().solve(motions);
-        wrong =
-          std::max(wrong, (Q * nearest - motions).norm() / motions.norm());
+        const Eigen::MatrixXd nearest = product(Q, least_squares(Q, motions));
+        wrong = std::max(wrong, (nearest - motions).norm() / motions.norm());
       }
     check_below(wrong, 1e-10, "rigid motions are among the functions of all");
   }
@@ -249,12 +248,12 @@ namespace
     for (unsigned int i = 0; i < n; ++i)
       if (A(i, i) <= 0)
         lower(i, i) = 1.;
-    const Eigen::MatrixXd forward = Eigen::MatrixXd::Identity(n, n) -
-      lower.triangularView<Eigen::Lower>().solve(A);
-    const Eigen::MatrixXd backward = Eigen::MatrixXd::Identity(n, n) -
-      lower.transpose().triangularView<Eigen::Upper>().solve(A);
-    const Eigen::MatrixXd before = forward * forward * forward,
-                          after  = backward * backward * backward;
+    const Eigen::MatrixXd I        = Eigen::MatrixXd::Identity(n, n);
+    const Eigen::MatrixXd forward  = I - solve(lower, A);
+    const Eigen::MatrixXd backward = I - solve(lower.transpose(), A);
+    const Eigen::MatrixXd before = product(forward, product(forward, forward));
+    const Eigen::MatrixXd after =
+      product(backward, product(backward, backward));
     // The ratio of errors in the energy norm, in which the null space does not
     // count.
     const auto ratio = [&](const Eigen::MatrixXd &E) {
@@ -264,18 +263,19 @@ namespace
       double result = 0;
       for (unsigned int step = 0; step < 100; ++step)
         {
-          const Eigen::VectorXd next = E * x;
-          result = std::sqrt(next.dot(A * next) / x.dot(A * x));
+          const Eigen::VectorXd next = product(E, x);
+          result = std::sqrt(next.dot(product(A, next).col(0)) /
+                             x.dot(product(A, x).col(0)));
           x      = next / next.norm();
         }
       return result;
     };
     const double with =
-      ratio(after * (Eigen::MatrixXd::Identity(n, n) - M * A) * before);
+      ratio(product(after, product(I - product(M, A), before)));
     check(with < 1., "with relaxation the cycle converges");
     // On so few cells in three dimensions the layer is nearly all there is.
-    check_below((dim == 2 ? 20. : 1.5) * std::log(ratio(after * before)) /
-                  std::log(with),
+    check_below((dim == 2 ? 20. : 1.5) *
+                  std::log(ratio(product(after, before))) / std::log(with),
                 1.,
                 "and faster than relaxation alone");
   }

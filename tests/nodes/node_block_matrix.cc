@@ -19,12 +19,11 @@
 
 #include <deal.II/fe/fe_values.h>
 
-#include <Eigen/Sparse>
-
 #include <cstring>
 #include <iostream>
 
 #include <tests/support/check.h>
+#include <tests/support/dense.h>
 #include <tests/support/random_problem.h>
 
 using namespace Tests;
@@ -122,8 +121,10 @@ namespace
       }
     A.vmult(y.data(), x.data());
     A.residual(r.data(), b.data(), x.data());
-    check_below((y - dense * x).cwiseAbs().maxCoeff(), 1e-13, "product");
-    check_below((r - (b - dense * x)).cwiseAbs().maxCoeff(), 1e-13, "residual");
+    check_below(
+      (y - product(dense, x)).cwiseAbs().maxCoeff(), 1e-13, "product");
+    check_below(
+      (r - (b - product(dense, x))).cwiseAbs().maxCoeff(), 1e-13, "residual");
 
     // Sweeps over some of the nodes, compared with the definition: solve for
     // one node, given all others.
@@ -150,9 +151,9 @@ namespace
           if (!relaxed || !in_some)
             continue;
           const Eigen::MatrixXd block = dense.block(dim * i, dim * i, dim, dim);
-          const Eigen::VectorXd defect =
-            b.segment(dim * i, dim) - dense.middleRows(dim * i, dim) * x;
-          x.segment(dim * i, dim) += block.inverse() * defect;
+          const Eigen::VectorXd defect = b.segment(dim * i, dim) -
+            product(dense.middleRows(dim * i, dim), x);
+          x.segment(dim * i, dim) += product(inverse(block), defect);
         }
     };
     GhostExchange          no_ghosts;
@@ -200,17 +201,17 @@ namespace
   test_pseudo_inverse()
   {
     std::cout << dim << "D, pseudo-inverse" << std::endl;
-    using Matrix = Eigen::Matrix<double, dim, dim>;
+    using Matrix = Eigen::MatrixXd;
     Random random(2);
     double worst = 0;
     for (unsigned int i = 0; i < 1000; ++i)
       {
         // Eigenvalues in [1,10], some of them replaced by rounding noise.
-        Matrix root;
+        Matrix root(dim, dim);
         for (unsigned int e = 0; e < dim * dim; ++e)
           root(e) = random(-1., 1.);
-        const Matrix Q = root.householderQr().householderQ();
-        Matrix       D = Matrix::Zero(), lost = Matrix::Zero();
+        const Matrix Q = orthogonal_factor(root);
+        Matrix       D = Matrix::Zero(dim, dim), lost = D;
         for (unsigned int d = 0; d < dim; ++d)
           if (random.chance(.5))
             D(d, d) = random(1., 10.);
@@ -219,22 +220,24 @@ namespace
               D(d, d)    = random(-1e-14, 1e-14);
               lost(d, d) = 1.;
             }
-        const Matrix   A = Q * D * Q.transpose();
+        const Matrix   A = congruence(Q.transpose(), D);
         NodeBlock<dim> block, null_space;
         for (unsigned int e = 0; e < dim * dim; ++e)
           block[e] = A(e);
         const NodeBlock<dim> inverse =
           pseudo_inverse<dim>(block, 1e-10, &null_space);
-        const Matrix B = Eigen::Map<const Matrix>(inverse.data());
-        const Matrix N = Eigen::Map<const Matrix>(null_space.data());
-        worst =
-          std::max({worst,
-                    (A * B * A - A).cwiseAbs().maxCoeff(),
-                    (B * A * B - B).cwiseAbs().maxCoeff(),
-                    (A * B - (A * B).transpose()).cwiseAbs().maxCoeff(),
-                    (B * A - (B * A).transpose()).cwiseAbs().maxCoeff(),
-                    (A * B + N - Matrix::Identity()).cwiseAbs().maxCoeff(),
-                    (N - Q * lost * Q.transpose()).cwiseAbs().maxCoeff()});
+        const Matrix B  = Eigen::Map<const Matrix>(inverse.data(), dim, dim);
+        const Matrix N  = Eigen::Map<const Matrix>(null_space.data(), dim, dim);
+        const Matrix AB = product(A, B), BA = product(B, A);
+        const auto   compare = [&](const Matrix &is, const Matrix &should_be) {
+          worst = std::max(worst, (is - should_be).cwiseAbs().maxCoeff());
+        };
+        compare(product(AB, A), A);
+        compare(product(BA, B), B);
+        compare(AB, AB.transpose());
+        compare(BA, BA.transpose());
+        compare(AB + N, Matrix::Identity(dim, dim));
+        compare(N, congruence(Q.transpose(), lost));
       }
     check_below(worst, 1e-12, "the conditions of Moore and Penrose");
   }
@@ -254,9 +257,8 @@ namespace
     std::cout << dim << "D, leaf matrix, " << constraints.n_nodes()
               << " nodes, " << problem.n_hanging() << " hang" << std::endl;
 
-    using Entry = Eigen::Triplet<double>;
-    std::vector<Entry>                   entries, extension;
-    FEValues<dim>                        fe_values(disc.mapping(),
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n_dofs, n_dofs), C = A;
+    FEValues<dim>   fe_values(disc.mapping(),
                             disc.dof_handler().get_fe(),
                             QGauss<dim>(2),
                             update_gradients | update_JxW_values);
@@ -280,20 +282,16 @@ namespace
                         lambda * fe_values[displacement].divergence(i, q) *
                           fe_values[displacement].divergence(j, q)) *
                   fe_values.JxW(q);
-              entries.emplace_back(indices[i], indices[j], sum);
+              A(indices[i], indices[j]) += sum;
             }
       }
     for (unsigned int i = 0; i < n_dofs; ++i)
       if (const auto *masters = disc.hanging_nodes().get_constraint_entries(i))
         for (const auto &master : *masters)
-          extension.emplace_back(i, master.first, master.second);
+          C(i, master.first) += master.second;
       else
-        extension.emplace_back(i, i, 1.);
-    Eigen::SparseMatrix<double> A(n_dofs, n_dofs), C(n_dofs, n_dofs);
-    A.setFromTriplets(entries.begin(), entries.end());
-    C.setFromTriplets(extension.begin(), extension.end());
-    const Eigen::MatrixXd expected = Eigen::SparseMatrix<double>(
-      Eigen::SparseMatrix<double>(C.transpose()) * A * C);
+        C(i, i) = 1.;
+    const Eigen::MatrixXd expected = congruence(C, A);
 
     // On one process local numbers are global ones.
     const Eigen::MatrixXd got = to_dense(problem.matrix());
@@ -359,13 +357,10 @@ namespace
       v(i) = random(-1., 1.);
     Eigen::VectorXd w = v;
     truncation.apply(w.data());
-    check_below((w - T * v).cwiseAbs().maxCoeff(), 1e-15, "apply()");
+    check_below((w - product(T, v)).cwiseAbs().maxCoeff(), 1e-15, "apply()");
 
-    const Eigen::MatrixXd TAT =
-      Eigen::SparseMatrix<double>(Eigen::SparseMatrix<double>(T.sparseView()) *
-                                  Eigen::SparseMatrix<double>(A.sparseView()) *
-                                  Eigen::SparseMatrix<double>(T.sparseView()));
-    difference = 0;
+    const Eigen::MatrixXd TAT = congruence(T, A); // T is symmetric
+    difference                = 0;
     for (unsigned int i = 0; i < constraints.n_nodes(); ++i)
       for (std::size_t e = problem.matrix().row_begin(i);
            e < problem.matrix().row_end(i);

@@ -4,8 +4,8 @@
 
 #include <cstdio>
 
-#include "dense_contact.h"
-#include "scenes.h"
+#include <tests/reference/solutions/dense_contact.h>
+#include <tests/reference/solutions/scenes.h>
 
 using namespace Reference;
 

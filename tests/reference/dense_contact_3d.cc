@@ -2,11 +2,11 @@
 // known without it: linear solutions, the two-dimensional reference where
 // nothing depends on y, symmetries, and its own certificate.
 
-#include "dense_contact_3d.h"
+#include <tests/reference/solutions/dense_contact_3d.h>
 
 #include <cstdio>
 
-#include "scenes_3d.h"
+#include <tests/reference/solutions/scenes_3d.h>
 
 using namespace Reference;
 
@@ -289,7 +289,7 @@ check_sphere()
     yes((given.displacement - solution.displacement).cwiseAbs().maxCoeff() <
         1e-12 * 0.02));
   const Eigen::SparseMatrix<double> A =
-    internal::stiffness(tresca.mesh, tresca.poisson_ratio);
+    stiffness(tresca.mesh, tresca.poisson_ratio);
   bool lowest = true;
   for (unsigned int trial = 0; trial < 100; ++trial)
     {

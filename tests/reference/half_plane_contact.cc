@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "half_plane_contact.h"
+#include <tests/reference/solutions/half_plane_contact.h>
 
 using namespace Reference;
 

@@ -1,26 +1,16 @@
-#ifndef tests_reference_scenes_3d_h
-#define tests_reference_scenes_3d_h
+#include <Eigen/Geometry>
+#include <tests/reference/solutions/scenes_3d.h>
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
-#include "dense_contact_3d.h"
-#include "scenes.h"
-
-/**
- * The scenes in three dimensions that have a truth, on structured meshes.
- */
 namespace Reference
 {
-  /**
-   * [0,size_x] x [0,size_y] x [0,size_z] in n_x by n_y by n_z cells, x running
-   * fastest in the numbers of nodes. With `distortion` > 0 nodes move by up to
-   * that fraction of a cell: inner ones anywhere, those of faces and edges
-   * within them.
-   */
-  inline Mesh3D
+  Mesh3D
   box(const std::array<unsigned int, 3> &n,
-      const Eigen::Vector3d             &size       = {1., 1., 1.},
-      const double                       distortion = 0.)
+      const Eigen::Vector3d             &size,
+      const double                       distortion)
   {
     Mesh3D mesh;
     for (unsigned int k = 0; k <= n[2]; ++k)
@@ -54,11 +44,9 @@ namespace Reference
     return mesh;
   }
 
-  /**
-   * Number of the node at a point, for tests whose nodes are ordered
-   * differently. Throws if there is none within 1e-9 of the mesh's extent.
-   */
-  inline unsigned int
+
+
+  unsigned int
   node_at(const Mesh3D &mesh, const Eigen::Vector3d &point)
   {
     double extent = 0.;
@@ -70,11 +58,9 @@ namespace Reference
     throw std::runtime_error("Reference: no node at this point.");
   }
 
-  /**
-   * Add the consistent load of a constant traction on all faces of cells that
-   * lie in the boundary plane x_component = coordinate.
-   */
-  inline void
+
+
+  void
   add_traction(ContactProblem3D      &problem,
                const unsigned int     component,
                const double           coordinate,
@@ -122,16 +108,13 @@ namespace Reference
         }
   }
 
-  /**
-   * A body whose lowest nodes may touch the plane `gap` below them and whose
-   * highest ones are displaced as given. Material, other gaps and loads are for
-   * the caller to add.
-   */
-  inline ContactProblem3D
+
+
+  ContactProblem3D
   body_on_plane(const Mesh3D          &mesh,
                 const double           friction_coefficient,
                 const Eigen::Vector3d &top,
-                const double           gap = 0.)
+                const double           gap)
   {
     ContactProblem3D problem;
     problem.mesh = mesh;
@@ -154,14 +137,13 @@ namespace Reference
     return problem;
   }
 
-  /**
-   * The unit cube on z = 0, the displacement of its top given, its sides free.
-   */
-  inline ContactProblem3D
+
+
+  ContactProblem3D
   block_3d(const unsigned int     n,
            const double           friction_coefficient,
-           const double           poisson_ratio = 0.3,
-           const Eigen::Vector3d &top           = {0.02, 0.01, -0.02})
+           const double           poisson_ratio,
+           const Eigen::Vector3d &top)
   {
     ContactProblem3D problem =
       body_on_plane(box({{n, n, n}}), friction_coefficient, top);
@@ -169,11 +151,9 @@ namespace Reference
     return problem;
   }
 
-  /**
-   * The same problem looked at from elsewhere. Displacements must be prescribed
-   * as whole vectors.
-   */
-  inline ContactProblem3D
+
+
+  ContactProblem3D
   rotated(const ContactProblem3D &problem, const Eigen::Matrix3d &rotation)
   {
     ContactProblem3D result = problem;
@@ -184,11 +164,11 @@ namespace Reference
     for (int i = 0; i < result.forces.size(); i += 3)
       result.forces.segment<3>(i) = rotation * problem.forces.segment<3>(i);
 
-    const std::vector<bool> fixed  = internal::prescribed(problem);
+    const std::vector<bool> fixed  = prescribed(problem);
     Eigen::VectorXd         values = Eigen::VectorXd::Zero(fixed.size());
     for (const auto &d : problem.dirichlet)
       {
-        if (!internal::wholly_prescribed(fixed, d.node))
+        if (!wholly_prescribed(fixed, d.node))
           throw std::runtime_error(
             "Reference: a single prescribed component cannot be rotated.");
         values[3 * d.node + d.component] = d.value;
@@ -198,94 +178,39 @@ namespace Reference
     return result;
   }
 
-  /**
-   * The patch test of `StickSlip` with shear in any direction: the top of a box
-   * moved by (shear, -compression) beyond closing the initial gap, side
-   * tractions that keep the stress uniform, all of it rotated. The solution is
-   * linear, so any mesh reproduces it.
-   */
-  class StickSlip3D
+
+
+  Eigen::Vector3d
+  StickSlip3D::displacement(const Eigen::Vector3d &point) const
   {
-  public:
-    StickSlip3D(const Eigen::Vector2d &shear,
-                const double           compression,
-                const double           friction_coefficient,
-                const double           initial_gap    = 0.,
-                const Eigen::Vector3d &size           = {1., 1., 1.},
-                const double           youngs_modulus = 1.,
-                const double           poisson_ratio  = 0.3,
-                const Eigen::Matrix3d &rotation = Eigen::Matrix3d::Identity())
-      : shear(shear)
-      , compression(compression)
-      , friction_coefficient(friction_coefficient)
-      , initial_gap(initial_gap)
-      , size(size)
-      , youngs_modulus(youngs_modulus)
-      , poisson_ratio(poisson_ratio)
-      , rotation(rotation)
-      , lambda(youngs_modulus * poisson_ratio /
-               ((1. + poisson_ratio) * (1. - 2. * poisson_ratio)))
-      , mu(youngs_modulus / (2. * (1. + poisson_ratio)))
-    {}
+    const double          z        = (rotation.transpose() * point)[2];
+    const Eigen::Vector2d gradient = shear_stress() / mu;
+    Eigen::Vector3d       u;
+    u << shear - (size[2] - z) * gradient,
+      -initial_gap - compression / size[2] * z;
+    return rotation * u;
+  }
 
-    bool
-    sticks() const
-    {
-      return shear.norm() <=
-        StickSlip::threshold(compression, friction_coefficient, poisson_ratio);
-    }
 
-    /// Shear stresses (sigma_xz, sigma_yz).
-    Eigen::Vector2d
-    shear_stress() const
-    {
-      return sticks()
-        ? Eigen::Vector2d(mu / size[2] * shear)
-        : Eigen::Vector2d(friction_coefficient * (lambda + 2. * mu) *
-                          compression / size[2] * shear.normalized());
-    }
 
-    /// Displacement at a point of the (rotated) body.
-    Eigen::Vector3d
-    displacement(const Eigen::Vector3d &point) const
-    {
-      const double          z        = (rotation.transpose() * point)[2];
-      const Eigen::Vector2d gradient = shear_stress() / mu;
-      Eigen::Vector3d       u;
-      u << shear - (size[2] - z) * gradient,
-        -initial_gap - compression / size[2] * z;
-      return rotation * u;
-    }
-
-    ContactProblem3D
-    problem(const std::array<unsigned int, 3> &n,
-            const double                       distortion = 0.) const
-    {
-      Eigen::Vector3d top;
-      top << shear, -compression - initial_gap;
-      ContactProblem3D problem = body_on_plane(
-        box(n, size, distortion), friction_coefficient, top, initial_gap);
-      problem.youngs_modulus = youngs_modulus;
-      problem.poisson_ratio  = poisson_ratio;
-      for (unsigned int c = 0; c < 2; ++c)
-        {
-          Eigen::Vector3d traction = Eigen::Vector3d::Zero();
-          traction[c]              = -lambda * compression / size[2];
-          traction[2]              = shear_stress()[c];
-          add_traction(problem, c, size[c], traction);
-          add_traction(problem, c, 0., -traction);
-        }
-      return rotated(problem, rotation);
-    }
-
-  private:
-    const Eigen::Vector2d shear;
-    const double          compression, friction_coefficient, initial_gap;
-    const Eigen::Vector3d size;
-    const double          youngs_modulus, poisson_ratio;
-    const Eigen::Matrix3d rotation;
-    const double          lambda, mu;
-  };
+  ContactProblem3D
+  StickSlip3D::problem(const std::array<unsigned int, 3> &n,
+                       const double                       distortion) const
+  {
+    Eigen::Vector3d top;
+    top << shear, -compression - initial_gap;
+    ContactProblem3D problem = body_on_plane(
+      box(n, size, distortion), friction_coefficient, top, initial_gap);
+    problem.youngs_modulus = youngs_modulus;
+    problem.poisson_ratio  = poisson_ratio;
+    for (unsigned int c = 0; c < 2; ++c)
+      {
+        Eigen::Vector3d traction = Eigen::Vector3d::Zero();
+        traction[c]              = -lambda * compression / size[2];
+        traction[2]              = shear_stress()[c];
+        add_traction(problem, c, size[c], traction);
+        add_traction(problem, c, 0., -traction);
+      }
+    return rotated(problem, rotation);
+  }
 } // namespace Reference
-
-#endif

@@ -1,5 +1,5 @@
-#ifndef tests_reference_half_plane_contact_h
-#define tests_reference_half_plane_contact_h
+#ifndef tests_reference_solutions_half_plane_contact_h
+#define tests_reference_solutions_half_plane_contact_h
 
 #include <Eigen/Dense>
 

@@ -1,191 +1,104 @@
-#ifndef tests_reference_dense_contact_3d_h
-#define tests_reference_dense_contact_3d_h
-
-#include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <Eigen/Sparse>
+#include <tests/reference/solutions/dense_contact_3d.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
-#include <vector>
 
-#include "dense_contact.h"
-
-/**
- * The truth in three dimensions. In two, where a node stands is one of finitely
- * many phases, each of them linear; here the direction of slip is a continuous
- * unknown and the law is solved by a semismooth Newton method. What a phase, a
- * violation, or a law of friction is, the header for two dimensions says.
- */
 namespace Reference
 {
-  /**
-   * A mesh of trilinear hexahedra. The vertices of a cell are numbered
-   * lexicographically, x running fastest: (0,0,0), (1,0,0), (0,1,0), ...
-   */
-  struct Mesh3D
+  Eigen::SparseMatrix<double>
+  stiffness(const Mesh3D &mesh, const double nu)
   {
-    std::vector<Eigen::Vector3d>             nodes;
-    std::vector<std::array<unsigned int, 8>> cells;
-  };
+    const double lambda = nu / ((1. + nu) * (1. - 2. * nu));
+    const double mu     = 1. / (2. * (1. + nu));
+    const double q      = 1. / std::sqrt(3.);
 
-  /**
-   * A node that may touch the obstacle, which lies at the distance `gap` along
-   * the unit vector `normal`.
-   */
-  struct ContactNode3D
+    std::vector<Eigen::Triplet<double>> entries;
+    entries.reserve(576 * mesh.cells.size());
+    for (const auto &cell : mesh.cells)
+      {
+        Eigen::Matrix<double, 24, 24> cell_matrix;
+        cell_matrix.setZero();
+        for (unsigned int point = 0; point < 8; ++point)
+          {
+            // Vertex v of [-1,1]^3 has the coordinates +-1 by the bits of v;
+            // so have the Gauss points, closer to the centre.
+            Eigen::Matrix<double, 8, 3> reference_gradients;
+            for (unsigned int v = 0; v < 8; ++v)
+              for (unsigned int d = 0; d < 3; ++d)
+                {
+                  double derivative = 0.125;
+                  for (unsigned int e = 0; e < 3; ++e)
+                    {
+                      const double sign = (v >> e) & 1 ? 1. : -1.;
+                      const double xi   = (point >> e) & 1 ? q : -q;
+                      derivative *= e == d ? sign : 1. + sign * xi;
+                    }
+                  reference_gradients(v, d) = derivative;
+                }
+            Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
+            for (unsigned int v = 0; v < 8; ++v)
+              jacobian += mesh.nodes[cell[v]] * reference_gradients.row(v);
+            const double det = jacobian.determinant();
+            if (det <= 0.)
+              throw std::runtime_error(
+                "Reference: a cell is degenerate or its vertices are not in "
+                "lexicographic order.");
+            const Eigen::Matrix<double, 8, 3> gradients =
+              reference_gradients * jacobian.inverse();
+
+            // lambda div u div v + mu (grad u : grad v + grad u : grad v^T)
+            for (unsigned int v = 0; v < 8; ++v)
+              for (unsigned int w = 0; w < 8; ++w)
+                {
+                  const Eigen::Vector3d a = gradients.row(v),
+                                        b = gradients.row(w);
+                  cell_matrix.block<3, 3>(3 * v, 3 * w) += det *
+                    (lambda * a * b.transpose() + mu * b * a.transpose() +
+                     mu * a.dot(b) * Eigen::Matrix3d::Identity());
+                }
+          }
+        for (unsigned int i = 0; i < 24; ++i)
+          for (unsigned int j = 0; j < 24; ++j)
+            entries.emplace_back(3 * cell[i / 3] + i % 3,
+                                 3 * cell[j / 3] + j % 3,
+                                 cell_matrix(i, j));
+      }
+
+    Eigen::SparseMatrix<double> matrix(3 * mesh.nodes.size(),
+                                       3 * mesh.nodes.size());
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    return matrix;
+  }
+
+
+
+  std::vector<bool>
+  prescribed(const ContactProblem3D &problem)
   {
-    unsigned int    node;
-    Eigen::Vector3d normal;
-    double          gap;
-    double friction_coefficient = 0.; ///< F, used by Coulomb's law only
-    double friction_bound       = 0.; ///< nodal force s, by Tresca's law only
-  };
+    std::vector<bool> result(3 * problem.mesh.nodes.size(), false);
+    for (const auto &d : problem.dirichlet)
+      result[3 * d.node + d.component] = true;
+    return result;
+  }
 
-  /**
-   * Everything that defines the discrete problem. Degree of freedom
-   * 3 * node + component; forces are nodal forces, not densities. A tangential
-   * component of a contact node may be prescribed to be zero, as on a plane of
-   * symmetry; friction then acts along the other tangent only.
-   */
-  struct ContactProblem3D
+
+
+  bool
+  wholly_prescribed(const std::vector<bool> &prescribed,
+                    const unsigned int       node)
   {
-    Mesh3D                              mesh;
-    double                              youngs_modulus = 1.;
-    double                              poisson_ratio  = 0.3;
-    std::vector<PrescribedDisplacement> dirichlet;
-    Eigen::VectorXd                     forces; ///< empty means zero
-    std::vector<ContactNode3D>          contact;
-    Friction                            friction = Friction::coulomb;
-  };
+    return prescribed[3 * node] && prescribed[3 * node + 1] &&
+      prescribed[3 * node + 2];
+  }
 
-  /**
-   * The solution. The vectors `state`, `normal_force`, `tangential_force` and
-   * `slip` run over the contact nodes in the order of the problem.
-   */
-  struct ContactSolution3D
+
+
+  namespace
   {
-    Eigen::VectorXd    displacement; ///< u, all degrees of freedom
-    Eigen::VectorXd    residual;     ///< R = A u - f
-    std::vector<State> state; ///< `open` whenever not in touch, also if Tresca
-                              ///< friction holds it
-    Eigen::VectorXd              normal_force;          ///< tau = -R.n
-    std::vector<Eigen::Vector3d> tangential_force;      ///< R + tau n
-    std::vector<Eigen::Vector3d> slip;                  ///< u - (u.n) n
-    double                       potential_energy = 0.; ///< u.(A u) / 2 - f.u
-    double       friction_energy = 0.; ///< sum of s |u_T|, s at the solution
-    Violations   violations;
-    unsigned int newton_steps       = 0; ///< of all steps of the continuation
-    unsigned int continuation_steps = 0; ///< 1: frictionless, then all friction
-
-    unsigned int
-    count(const State which) const
-    {
-      return std::count(state.begin(), state.end(), which);
-    }
-
-    /// Value of the functional that is minimal for given friction bounds.
-    double
-    energy() const
-    {
-      return potential_energy + friction_energy;
-    }
-  };
-
-  namespace internal
-  {
-    /**
-     * Stiffness matrix for Young's modulus one, trilinear elements, 2x2x2 Gauss
-     * points.
-     */
-    inline Eigen::SparseMatrix<double>
-    stiffness(const Mesh3D &mesh, const double nu)
-    {
-      const double lambda = nu / ((1. + nu) * (1. - 2. * nu));
-      const double mu     = 1. / (2. * (1. + nu));
-      const double q      = 1. / std::sqrt(3.);
-
-      std::vector<Eigen::Triplet<double>> entries;
-      entries.reserve(576 * mesh.cells.size());
-      for (const auto &cell : mesh.cells)
-        {
-          Eigen::Matrix<double, 24, 24> cell_matrix;
-          cell_matrix.setZero();
-          for (unsigned int point = 0; point < 8; ++point)
-            {
-              // Vertex v of [-1,1]^3 has the coordinates +-1 by the bits of v;
-              // so have the Gauss points, closer to the centre.
-              Eigen::Matrix<double, 8, 3> reference_gradients;
-              for (unsigned int v = 0; v < 8; ++v)
-                for (unsigned int d = 0; d < 3; ++d)
-                  {
-                    double derivative = 0.125;
-                    for (unsigned int e = 0; e < 3; ++e)
-                      {
-                        const double sign = (v >> e) & 1 ? 1. : -1.;
-                        const double xi   = (point >> e) & 1 ? q : -q;
-                        derivative *= e == d ? sign : 1. + sign * xi;
-                      }
-                    reference_gradients(v, d) = derivative;
-                  }
-              Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
-              for (unsigned int v = 0; v < 8; ++v)
-                jacobian += mesh.nodes[cell[v]] * reference_gradients.row(v);
-              const double det = jacobian.determinant();
-              if (det <= 0.)
-                throw std::runtime_error(
-                  "Reference: a cell is degenerate or its vertices are not in "
-                  "lexicographic order.");
-              const Eigen::Matrix<double, 8, 3> gradients =
-                reference_gradients * jacobian.inverse();
-
-              // lambda div u div v + mu (grad u : grad v + grad u : grad v^T)
-              for (unsigned int v = 0; v < 8; ++v)
-                for (unsigned int w = 0; w < 8; ++w)
-                  {
-                    const Eigen::Vector3d a = gradients.row(v),
-                                          b = gradients.row(w);
-                    cell_matrix.block<3, 3>(3 * v, 3 * w) += det *
-                      (lambda * a * b.transpose() + mu * b * a.transpose() +
-                       mu * a.dot(b) * Eigen::Matrix3d::Identity());
-                  }
-            }
-          for (unsigned int i = 0; i < 24; ++i)
-            for (unsigned int j = 0; j < 24; ++j)
-              entries.emplace_back(3 * cell[i / 3] + i % 3,
-                                   3 * cell[j / 3] + j % 3,
-                                   cell_matrix(i, j));
-        }
-
-      Eigen::SparseMatrix<double> matrix(3 * mesh.nodes.size(),
-                                         3 * mesh.nodes.size());
-      matrix.setFromTriplets(entries.begin(), entries.end());
-      return matrix;
-    }
-
-
-    /// Which degrees of freedom are prescribed.
-    inline std::vector<bool>
-    prescribed(const ContactProblem3D &problem)
-    {
-      std::vector<bool> result(3 * problem.mesh.nodes.size(), false);
-      for (const auto &d : problem.dirichlet)
-        result[3 * d.node + d.component] = true;
-      return result;
-    }
-
-
-    /// Whether nothing is left to decide at a node.
-    inline bool
-    wholly_prescribed(const std::vector<bool> &prescribed,
-                      const unsigned int       node)
-    {
-      return prescribed[3 * node] && prescribed[3 * node + 1] &&
-        prescribed[3 * node + 2];
-    }
 
 
     /**
@@ -425,7 +338,7 @@ namespace Reference
      * The frame (n,t_1,t_2) of a contact node as columns; components that are
      * prescribed at it become tangents.
      */
-    inline Eigen::Matrix3d
+    Eigen::Matrix3d
     frame(const ContactProblem3D  &problem,
           const std::vector<bool> &fixed,
           const ContactNode3D     &node,
@@ -455,19 +368,13 @@ namespace Reference
       result.col(1) = result.col(2).cross(node.normal);
       return result;
     }
-  } // namespace internal
+  } // namespace
 
 
-  /**
-   * Check every condition of the discrete law, and equilibrium, at a given
-   * displacement, which may come from anywhere. The conditions are those of
-   * the header for two dimensions, written with vectors; nothing of the
-   * equation that `solve` solves enters.
-   */
-  inline Violations
+
+  Violations
   check(const ContactProblem3D &problem, const Eigen::VectorXd &u)
   {
-    using namespace internal;
     const std::vector<bool> fixed = prescribed(problem);
     const double            E     = problem.youngs_modulus;
     Eigen::VectorXd R = stiffness(problem.mesh, problem.poisson_ratio) * u;
@@ -528,20 +435,10 @@ namespace Reference
   }
 
 
-  /**
-   * Solve the discrete Signorini problem with the given friction law directly.
-   * All nodes but those of the contact boundary are eliminated by a sparse
-   * factorisation, the dense rest is solved by Newton's method. Throws when the
-   * result violates the law by more than 1e-10.
-   *
-   * The interior is solved for once per contact degree of freedom, which is
-   * what takes the time: a quarter of a second for 8^3 cells, half a minute for
-   * 16^3.
-   */
-  inline ContactSolution3D
+
+  ContactSolution3D
   solve(const ContactProblem3D &problem)
   {
-    using namespace internal;
     const double            E      = problem.youngs_modulus;
     const unsigned int      n_dofs = 3 * problem.mesh.nodes.size();
     const std::vector<bool> fixed  = prescribed(problem);
@@ -678,5 +575,3 @@ namespace Reference
     return solution;
   }
 } // namespace Reference
-
-#endif

@@ -1,11 +1,6 @@
-#ifndef tests_reference_dense_contact_h
-#define tests_reference_dense_contact_h
-
-#include <Eigen/Dense>
 #include <Eigen/Sparse>
+#include <tests/reference/solutions/dense_contact.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -13,217 +8,78 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <vector>
 
-/**
- * Truths for the tests: solutions found by other means than those under test.
- * Nothing in this namespace uses deal.II or the library of this project.
- */
 namespace Reference
 {
-  /**
-   * A mesh of quadrilaterals. The vertices of a cell are numbered
-   * lexicographically: (0,0), (1,0), (0,1), (1,1).
-   */
-  struct Mesh
+  Eigen::SparseMatrix<double>
+  stiffness(const Mesh &mesh, const double nu)
   {
-    std::vector<Eigen::Vector2d>             nodes;
-    std::vector<std::array<unsigned int, 4>> cells;
-  };
+    const double lambda = nu / ((1. + nu) * (1. - 2. * nu));
+    const double mu     = 1. / (2. * (1. + nu));
 
-  /**
-   * One prescribed displacement component.
-   */
-  struct PrescribedDisplacement
-  {
-    unsigned int node;
-    unsigned int component;
-    double       value;
-  };
+    Eigen::Matrix3d material;
+    material << lambda + 2. * mu, lambda, 0., //
+      lambda, lambda + 2. * mu, 0.,           //
+      0., 0., mu;
 
-  /**
-   * A node whose displacement is the weighted mean of other (not hanging)
-   * nodes.
-   */
-  struct HangingNode
-  {
-    unsigned int                                 node;
-    std::vector<std::pair<unsigned int, double>> masters;
-  };
+    const double                        q = 1. / std::sqrt(3.);
+    std::vector<Eigen::Triplet<double>> entries;
+    entries.reserve(64 * mesh.cells.size());
 
-  /**
-   * A node that may touch the obstacle, which lies at the distance `gap` along
-   * the unit vector `normal`.
-   */
-  struct ContactNode
-  {
-    unsigned int    node;
-    Eigen::Vector2d normal;
-    double          gap;
-    double friction_coefficient = 0.; ///< F, used by Coulomb's law only
-    double friction_bound       = 0.; ///< nodal force s, by Tresca's law only
-  };
+    for (const auto &cell : mesh.cells)
+      {
+        Eigen::Matrix<double, 8, 8> cell_matrix;
+        cell_matrix.setZero();
+        for (const double xi : {-q, q})
+          for (const double eta : {-q, q})
+            {
+              Eigen::Matrix<double, 4, 2> reference_gradients;
+              reference_gradients << -(1. - eta), -(1. - xi), //
+                (1. - eta), -(1. + xi),                       //
+                -(1. + eta), (1. - xi),                       //
+                (1. + eta), (1. + xi);
+              reference_gradients *= 0.25;
 
-  enum class Friction
-  {
-    none,
-    tresca,
-    coulomb
-  };
+              Eigen::Matrix2d jacobian = Eigen::Matrix2d::Zero();
+              for (unsigned int v = 0; v < 4; ++v)
+                jacobian += mesh.nodes[cell[v]] * reference_gradients.row(v);
+              const double det = jacobian.determinant();
+              if (det <= 0.)
+                throw std::runtime_error(
+                  "Reference: a cell is degenerate or its vertices are not "
+                  "in lexicographic order.");
+              const Eigen::Matrix<double, 4, 2> gradients =
+                reference_gradients * jacobian.inverse();
 
-  /**
-   * Everything that defines the discrete problem. Degree of freedom
-   * 2 * node + component; forces are nodal forces, not densities.
-   */
-  struct ContactProblem
-  {
-    Mesh                                mesh;
-    double                              youngs_modulus = 1.;
-    double                              poisson_ratio  = 0.3;
-    std::vector<PrescribedDisplacement> dirichlet;
-    std::vector<HangingNode>            hanging; ///< none on conforming meshes
-    Eigen::VectorXd                     forces;  ///< empty means zero
-    std::vector<ContactNode>            contact;
-    Friction                            friction = Friction::coulomb;
-  };
+              Eigen::Matrix<double, 3, 8> strain;
+              for (unsigned int v = 0; v < 4; ++v)
+                strain.middleCols<2>(2 * v) << gradients(v, 0), 0., //
+                  0., gradients(v, 1),                              //
+                  gradients(v, 1), gradients(v, 0);
+              cell_matrix += det * strain.transpose() * material * strain;
+            }
+        for (unsigned int i = 0; i < 8; ++i)
+          for (unsigned int j = 0; j < 8; ++j)
+            entries.emplace_back(2 * cell[i / 2] + i % 2,
+                                 2 * cell[j / 2] + j % 2,
+                                 cell_matrix(i, j));
+      }
 
-  /**
-   * By how much a displacement field violates the discrete law. Forces are
-   * relative to the largest nodal contact force, lengths to the largest
-   * displacement; all are zero at an exact solution.
-   */
-  struct Violations
-  {
-    double penetration     = 0.; ///< u_n - g where positive
-    double tension         = 0.; ///< -tau where positive
-    double complementarity = 0.; ///< min(tau, g - u_n)
-    double cone            = 0.; ///< |R_T| - s where positive
-    double slip            = 0.; ///< slip without the full bound, or along R_T
-    double equilibrium     = 0.; ///< R where nothing is in touch
+    Eigen::SparseMatrix<double> matrix(2 * mesh.nodes.size(),
+                                       2 * mesh.nodes.size());
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    return matrix;
+  }
 
-    double
-    max() const
-    {
-      return std::max(
-        {penetration, tension, complementarity, cone, slip, equilibrium});
-    }
-  };
 
-  enum class State
-  {
-    open     = 0,
-    sliding  = 1,
-    sticking = 2
-  };
 
-  /**
-   * The solution. The vectors `state`, `normal_force`, `tangential_force` and
-   * `slip` run over the contact nodes in the order of the problem. Tangent is
-   * t = (-n_y, n_x): (1,0) for n = (0,-1).
-   */
-  struct ContactSolution
-  {
-    Eigen::VectorXd    displacement; ///< u, all degrees of freedom
-    Eigen::VectorXd    residual;     ///< R = A u - f, zero at hanging nodes
-    std::vector<State> state; ///< `open` whenever not in touch, also if Tresca
-                              ///< friction holds it
-    Eigen::VectorXd normal_force;     ///< tau = -R.n
-    Eigen::VectorXd tangential_force; ///< R.t
-    Eigen::VectorXd slip;             ///< u.t
-    Violations      violations;
-    unsigned int    active_set_steps      = 0;
-    bool            relaxation_was_needed = false;
-
-    unsigned int
-    count(const State which) const
-    {
-      return std::count(state.begin(), state.end(), which);
-    }
-  };
-
-  /**
-   * How the condensed problem is solved. The active set method falls back to
-   * relaxation by itself; asking for relaxation gives a second opinion.
-   */
-  enum class Method
-  {
-    active_set,
-    relaxation
-  };
-
-  namespace internal
+  namespace
   {
     /// The positive tangent that belongs to a normal.
-    inline Eigen::Vector2d
+    Eigen::Vector2d
     tangent(const Eigen::Vector2d &normal)
     {
       return {-normal[1], normal[0]};
-    }
-
-
-    /**
-     * Stiffness matrix of plane strain for Young's modulus one, bilinear
-     * elements, 2x2 Gauss points. (All computations are done for modulus one:
-     * a scene in pascals would otherwise lose its meaning of "small".)
-     */
-    inline Eigen::SparseMatrix<double>
-    stiffness(const Mesh &mesh, const double nu)
-    {
-      const double lambda = nu / ((1. + nu) * (1. - 2. * nu));
-      const double mu     = 1. / (2. * (1. + nu));
-
-      Eigen::Matrix3d material;
-      material << lambda + 2. * mu, lambda, 0., //
-        lambda, lambda + 2. * mu, 0.,           //
-        0., 0., mu;
-
-      const double                        q = 1. / std::sqrt(3.);
-      std::vector<Eigen::Triplet<double>> entries;
-      entries.reserve(64 * mesh.cells.size());
-
-      for (const auto &cell : mesh.cells)
-        {
-          Eigen::Matrix<double, 8, 8> cell_matrix;
-          cell_matrix.setZero();
-          for (const double xi : {-q, q})
-            for (const double eta : {-q, q})
-              {
-                Eigen::Matrix<double, 4, 2> reference_gradients;
-                reference_gradients << -(1. - eta), -(1. - xi), //
-                  (1. - eta), -(1. + xi),                       //
-                  -(1. + eta), (1. - xi),                       //
-                  (1. + eta), (1. + xi);
-                reference_gradients *= 0.25;
-
-                Eigen::Matrix2d jacobian = Eigen::Matrix2d::Zero();
-                for (unsigned int v = 0; v < 4; ++v)
-                  jacobian += mesh.nodes[cell[v]] * reference_gradients.row(v);
-                const double det = jacobian.determinant();
-                if (det <= 0.)
-                  throw std::runtime_error(
-                    "Reference: a cell is degenerate or its vertices are not "
-                    "in lexicographic order.");
-                const Eigen::Matrix<double, 4, 2> gradients =
-                  reference_gradients * jacobian.inverse();
-
-                Eigen::Matrix<double, 3, 8> strain;
-                for (unsigned int v = 0; v < 4; ++v)
-                  strain.middleCols<2>(2 * v) << gradients(v, 0), 0., //
-                    0., gradients(v, 1),                              //
-                    gradients(v, 1), gradients(v, 0);
-                cell_matrix += det * strain.transpose() * material * strain;
-              }
-          for (unsigned int i = 0; i < 8; ++i)
-            for (unsigned int j = 0; j < 8; ++j)
-              entries.emplace_back(2 * cell[i / 2] + i % 2,
-                                   2 * cell[j / 2] + j % 2,
-                                   cell_matrix(i, j));
-        }
-
-      Eigen::SparseMatrix<double> matrix(2 * mesh.nodes.size(),
-                                         2 * mesh.nodes.size());
-      matrix.setFromTriplets(entries.begin(), entries.end());
-      return matrix;
     }
 
 
@@ -617,17 +473,13 @@ namespace Reference
           }
       }
     };
-  } // namespace internal
+  } // namespace
 
 
-  /**
-   * Check every condition of the discrete law, and equilibrium, at a given
-   * displacement, which may come from anywhere.
-   */
-  inline Violations
+
+  Violations
   check(const ContactProblem &problem, const Eigen::VectorXd &u)
   {
-    using namespace internal;
     const FreeSpace space(problem);
     const double    E = problem.youngs_modulus;
     Eigen::VectorXd R = stiffness(problem.mesh, problem.poisson_ratio) * u;
@@ -694,17 +546,10 @@ namespace Reference
   }
 
 
-  /**
-   * Solve the discrete Signorini problem with the given friction law directly.
-   * All nodes but those of the contact boundary are eliminated by a sparse
-   * factorisation, the small dense rest is solved by an active set method with
-   * the exact derivative of Coulomb's law, and by nonlinear relaxation where
-   * that cycles. Throws when the result violates the law by more than 1e-10.
-   */
-  inline ContactSolution
-  solve(const ContactProblem &problem, const Method method = Method::active_set)
+
+  ContactSolution
+  solve(const ContactProblem &problem, const Method method)
   {
-    using namespace internal;
     const FreeSpace    space(problem);
     const double       E      = problem.youngs_modulus;
     const unsigned int n_dofs = 2 * problem.mesh.nodes.size();
@@ -868,5 +713,3 @@ namespace Reference
     return solution;
   }
 } // namespace Reference
-
-#endif
