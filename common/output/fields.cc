@@ -463,22 +463,23 @@ namespace Friction
       if (!fs::exists(directory.file(file_name(what, level) + ".pvtu")))
         return;
       if (files.empty())
-        fs::remove(directory.file(what + ".pvd"));
+        directory.remove(what + ".pvd");
       else
         directory.write(what + ".pvd", [&](std::ostream &out) {
           DataOutBase::write_pvd_record(out, files);
         });
-      fs::remove(directory.file(file_name(what, level) + ".pvtu"));
-      std::vector<fs::path> pieces;
+      directory.remove(file_name(what, level) + ".pvtu");
+      std::vector<std::string> pieces;
       for (const auto &entry : fs::directory_iterator(directory.path()))
         {
-          const auto file = run_file(entry.path().filename().string());
+          const std::string name = entry.path().filename().string();
+          const auto        file = run_file(name);
           if (file && file->what == what && file->ending == "vtu" &&
               file->level == static_cast<int>(level) && entry.is_regular_file())
-            pieces.push_back(entry.path());
+            pieces.push_back(name);
         }
-      for (const fs::path &piece : pieces)
-        fs::remove(piece);
+      for (const std::string &piece : pieces)
+        directory.remove(piece);
     });
   }
 

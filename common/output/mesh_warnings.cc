@@ -101,13 +101,13 @@ namespace Friction
         }
     if (angle > smallest_edge)
       warnings.push_back("Warning: the contact boundary is that of the mesh "
-                         "file, with edges of "
-                         "up to " +
+                         "file, with edges of up to " +
                          number(angle) + " degrees, one of them at " +
                          coordinates(where) +
                          ", which stay however fine the mesh, and where the "
-                         "contact stress has "
-                         "peaks; a finer mesh file has flatter ones.");
+                         "contact stress has peaks; if the boundary is meant "
+                         "to be smooth there, take a finer mesh file, whose "
+                         "edges are flatter.");
     return warnings;
   }
 

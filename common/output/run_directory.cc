@@ -296,4 +296,20 @@ namespace Friction
   {
     write_stream_then_rename(file(name), write_to);
   }
+
+
+
+  void
+  RunDirectory::remove(const std::string &name) const
+  {
+    std::error_code error;
+    if (std::filesystem::is_directory(file(name), error))
+      error = std::make_error_code(std::errc::is_a_directory);
+    else
+      std::filesystem::remove(file(name), error);
+    if (error)
+      throw InputError(
+        "The file '" + excerpt(file(name), 300) +
+        "' of an earlier run cannot be removed: " + error.message() + ".");
+  }
 } // namespace Friction

@@ -93,6 +93,10 @@ namespace Friction
     void write(const std::string                         &name,
                const std::function<void(std::ostream &)> &write_to) const;
 
+    /// Removes a file of this directory, if it is there. Throws an InputError
+    /// that names it if that is impossible: it may be a directory.
+    void remove(const std::string &name) const;
+
   private:
     void create() const;
 

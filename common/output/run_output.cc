@@ -20,7 +20,7 @@ namespace Friction
   namespace
   {
     // To be increased whenever what is in a checkpoint changes.
-    constexpr unsigned int checkpoint_format = 7;
+    constexpr unsigned int checkpoint_format = 8;
 
 
 
@@ -31,15 +31,54 @@ namespace Friction
       unsigned int dimension  = 0;
       double       mesh       = 0.;
       unsigned int ids        = 0;
+      unsigned int groups     = 0;
       std::string  parameters = {};
 
       template <class Archive>
       void
       serialize(Archive &archive, const unsigned int /*version*/)
       {
-        archive &format &dimension &mesh &ids &parameters;
+        archive &format &dimension &mesh &ids &groups &parameters;
       }
     };
+
+
+
+    // A number for a sequence of them.
+    class Hash
+    {
+    public:
+      void
+      add(const unsigned int number)
+      {
+        value = (value ^ (number + 1)) * 16777619u + 1;
+      }
+
+      unsigned int
+      result() const
+      {
+        return value;
+      }
+
+    private:
+      std::uint32_t value = 0;
+    };
+
+
+
+    // The same sections may name other parts of the same mesh: in a mesh file,
+    // two groups can have exchanged their names.
+    template <int dim>
+    unsigned int
+    hash_of_groups(const Scene<dim> &scene)
+    {
+      Hash hash;
+      for (const types::boundary_id id : scene.boundary_ids())
+        hash.add(id);
+      for (const types::material_id id : scene.materials().ids())
+        hash.add(id);
+      return hash.result();
+    }
 
 
 
@@ -87,6 +126,7 @@ namespace Friction
              parameters.output.principal_stresses)
     , verification(directory)
     , checkpoints(directory, communicator)
+    , groups(hash_of_groups(scene))
   {}
 
 
@@ -368,23 +408,20 @@ namespace Friction
   std::pair<double, unsigned int>
   RunOutput<dim>::fingerprint(const Triangulation &triangulation)
   {
-    double        sum  = 0;
-    std::uint32_t hash = 0;
-    const auto    add  = [&](const unsigned int id) {
-      hash = (hash ^ (id + 1)) * 16777619u + 1;
-    };
+    double sum = 0;
+    Hash   hash;
     for (const auto &cell : triangulation.cell_iterators_on_level(0))
       {
         for (const unsigned int v : cell->vertex_indices())
           for (unsigned int d = 0; d < dim; ++d)
             sum += (1. + d + dim * (v + 8. * cell->index())) *
               std::abs(cell->vertex(v)[d]);
-        add(cell->material_id());
+        hash.add(cell->material_id());
         for (const unsigned int f : cell->face_indices())
           if (cell->at_boundary(f))
-            add(cell->face(f)->boundary_id());
+            hash.add(cell->face(f)->boundary_id());
       }
-    return {sum, hash};
+    return {sum, hash.result()};
   }
 
 
@@ -408,6 +445,7 @@ namespace Friction
     Header header;
     header.dimension                       = dim;
     std::tie(header.mesh, header.ids)      = fingerprint(triangulation);
+    header.groups                          = groups;
     header.parameters                      = parameters.text;
     const std::vector<Console::Note> notes = the_console.notes();
 
@@ -492,6 +530,11 @@ namespace Friction
     const auto [mesh, ids] = fingerprint(triangulation);
     if (std::abs(header.mesh - mesh) > 1e-10 * mesh || header.ids != ids)
       throw InputError(here + "belongs to another coarse mesh.");
+    if (header.groups != groups)
+      throw InputError(
+        here +
+        "belongs to a coarse mesh in which the names of physical "
+        "groups are those of other groups.");
 
     // Would this run have come to that level at all? In later load steps levels
     // and dofs are those of the run that wrote the checkpoint.

@@ -176,6 +176,7 @@ namespace Friction
     FieldWriter<dim>      fields;
     VerificationData<dim> verification;
     Checkpoints           checkpoints;
+    const unsigned int    groups; ///< a number for what sections speak of
 
     std::string last_forces; ///< as a sentence
 

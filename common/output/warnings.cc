@@ -192,30 +192,43 @@ namespace Friction
 
     // The deepest of the nodes that are no contact nodes and yet inside an
     // obstacle, and its place: undeformed, of those on the contact boundary,
-    // which have been left out; displaced, of those on all of the boundary that
-    // have been outside before. (A body may well hang over the edge of what is
-    // a half space here.) Where something is prescribed, so is where they go. A
-    // length.
+    // which have been left out, in the obstacle that this part of it faces;
+    // displaced, of those on all of the boundary that have been outside before.
+    // (A body may well hang over the edge of what is a half space here.) Where
+    // something is prescribed, so is where they go. A length.
     template <int dim>
     std::pair<double, Point<dim>>
     depth_of_other_nodes(const Discretization<dim> &discretization,
                          const VectorType          *displacement = nullptr)
     {
-      const Scene<dim>                  &scene = discretization.scene();
-      const NodalConstraints<dim>       &nodes = discretization.constraints();
-      const double                       size  = discretization.body_size();
-      std::map<unsigned int, Point<dim>> points;
-      std::vector<char>                  is_contact(nodes.n_nodes(), 0);
+      const Scene<dim>            &scene = discretization.scene();
+      const NodalConstraints<dim> &nodes = discretization.constraints();
+      const double                 size  = discretization.body_size();
+      struct BoundaryNode
+      {
+        Point<dim>                              point;
+        std::set<const ContactCondition<dim> *> conditions;
+      };
+      std::map<unsigned int, BoundaryNode> boundary;
+      std::vector<char>                    is_contact(nodes.n_nodes(), 0);
       for (const auto &cell :
            discretization.dof_handler().active_cell_iterators())
         if (!cell->is_artificial())
           for (const unsigned int f : cell->face_indices())
-            if (cell->at_boundary(f) &&
-                (displacement != nullptr ||
-                 scene.contact_on(cell->face(f)->boundary_id()) != nullptr))
-              for (const unsigned int v : cell->face(f)->vertex_indices())
-                points[nodes.node_of_dof(cell->face(f)->vertex_dof_index(
-                  v, 0))] = cell->face(f)->vertex(v);
+            if (cell->at_boundary(f))
+              {
+                const ContactCondition<dim> *condition =
+                  scene.contact_on(cell->face(f)->boundary_id());
+                if (displacement == nullptr && condition == nullptr)
+                  continue;
+                for (const unsigned int v : cell->face(f)->vertex_indices())
+                  {
+                    BoundaryNode &node = boundary[nodes.node_of_dof(
+                      cell->face(f)->vertex_dof_index(v, 0))];
+                    node.point         = cell->face(f)->vertex(v);
+                    node.conditions.insert(condition);
+                  }
+              }
       // Where none of the nodes can touch, other warnings say so.
       std::vector<unsigned int> n_nodes(scene.contact_conditions().size(), 0);
       for (const ContactNode<dim> &p : discretization.contact())
@@ -232,24 +245,27 @@ namespace Friction
         return std::isfinite(gap) ? -gap : 0.;
       };
       std::pair<double, Point<dim>> deepest(0., Point<dim>());
-      for (const auto &[node, p] : points)
+      for (const auto &[node, at] : boundary)
         if (!is_contact[node] && nodes.is_free(node) &&
             node < nodes.n_owned_nodes())
           for (unsigned int i = 0; i < n_nodes.size(); ++i)
-            if (n_nodes[i] > 0 && can_touch(scene.contact_conditions()[i]))
-              {
-                const Obstacle<dim> &obstacle =
-                  scene.contact_conditions()[i].obstacle;
-                Point<dim> moved = p;
-                if (displacement != nullptr)
-                  for (unsigned int d = 0; d < dim; ++d)
-                    moved[d] += displacement->local_element(dim * node + d);
-                const double depth = depth_in(obstacle, moved);
-                if (depth > deepest.first &&
-                    (displacement == nullptr ||
-                     depth_in(obstacle, p) <= 1e-10 * size))
-                  deepest = {depth, p};
-              }
+            {
+              const ContactCondition<dim> &condition =
+                scene.contact_conditions()[i];
+              if (n_nodes[i] == 0 || !can_touch(condition) ||
+                  (displacement == nullptr &&
+                   at.conditions.count(&condition) == 0))
+                continue;
+              Point<dim> moved = at.point;
+              if (displacement != nullptr)
+                for (unsigned int d = 0; d < dim; ++d)
+                  moved[d] += displacement->local_element(dim * node + d);
+              const double depth = depth_in(condition.obstacle, moved);
+              if (depth > deepest.first &&
+                  (displacement == nullptr ||
+                   depth_in(condition.obstacle, at.point) <= 1e-10 * size))
+                deepest = {depth, at.point};
+            }
       return largest<dim>(nodes.communicator(), deepest.first, deepest.second);
     }
 
@@ -379,7 +395,11 @@ namespace Friction
     const MPI_Comm communicator = discretization.constraints().communicator();
 
     std::vector<std::string> warnings = parameters.warnings;
-    const std::string        about_scene =
+    if (dim == 2)
+      warnings.insert(warnings.end(),
+                      parameters.warnings_in_two_dimensions.begin(),
+                      parameters.warnings_in_two_dimensions.end());
+    const std::string about_scene =
       scene.warning(discretization.contact().largest_coefficient());
     if (!about_scene.empty())
       warnings.push_back(about_scene);

@@ -546,6 +546,33 @@ namespace Friction
 
 
 
+    // Those that have a meaning in three dimensions only. A scene file does not
+    // say how many there are.
+    std::vector<std::string>
+    entries_of_three_dimensions(SceneFile &values)
+    {
+      std::vector<std::string> names    = {"Solver/Local solver"};
+      const auto               add_rods = [&](const unsigned int number) {
+        const std::string section = section_name("Obstacle", number);
+        if (values.get(section + "/Kind") == "rods")
+          for (const std::string name : {"/Axes", "/Length"})
+            names.push_back(section + name);
+      };
+      add_rods(1);
+      for (const unsigned int number : values.further_contacts())
+        add_rods(number);
+
+      std::vector<std::string> warnings;
+      for (const std::string &name : names)
+        if (values.is_changed(name))
+          warnings.push_back("Warning: " + values.subject(name) +
+                             " is not used, since the scene is one of two "
+                             "dimensions.");
+      return warnings;
+    }
+
+
+
     // Friction feels what the body does, and not what the obstacle does.
     void
     warn_of_moving_obstacles(SceneFile &values, Parameters &parameters)
@@ -811,7 +838,8 @@ namespace Friction
                          " is empty; name a directory.");
     }
 
-    parameters.warnings = unused_entries(values);
+    parameters.warnings                   = unused_entries(values);
+    parameters.warnings_in_two_dimensions = entries_of_three_dimensions(values);
     warn_of_moving_obstacles(values, parameters);
     return parameters;
   }

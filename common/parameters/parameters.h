@@ -193,6 +193,9 @@ namespace Friction
     /// use. Each a sentence.
     std::vector<std::string> warnings;
 
+    /// The same of what it would use in three dimensions only.
+    std::vector<std::string> warnings_in_two_dimensions;
+
     std::string name; ///< stem of the scene file's name
     std::string text; ///< all parameters in effect, in the file format
 

@@ -35,13 +35,13 @@ namespace Friction
 
 
   template <int dim>
-  std::set<types::material_id>
+  std::vector<types::material_id>
   Materials<dim>::ids() const
   {
-    std::set<types::material_id> ids;
+    std::vector<types::material_id> ids;
     for (const Region &region : regions)
       if (region.condition == nullptr)
-        ids.insert(region.id);
+        ids.push_back(region.id);
     return ids;
   }
 

@@ -8,7 +8,6 @@
 #include <deal.II/base/types.h>
 
 #include <memory>
-#include <set>
 #include <vector>
 
 namespace Friction
@@ -80,8 +79,8 @@ namespace Friction
       return all[0];
     }
 
-    /** The physical ids that regions have. */
-    std::set<types::material_id> ids() const;
+    /** The physical ids of the regions that have one, in their order. */
+    std::vector<types::material_id> ids() const;
 
     /** Whether any of them has the mean over each cell as volumetric strain. */
     bool uses_means() const;

@@ -620,14 +620,11 @@ namespace Friction
       mesh_file = read_mesh_file();
     if (mesh_file != nullptr)
       {
-        std::set<types::boundary_id> used;
-        for (const auto &condition : contacts)
-          used.insert(condition.boundary_id);
-        for (const auto &condition : dirichlet)
-          used.insert(condition.boundary_id);
-        for (const auto &condition : tractions)
-          used.insert(condition.boundary_id);
-        mesh_file->make(used, the_materials.ids(), mesh);
+        const auto boundaries = boundary_ids();
+        const auto regions    = the_materials.ids();
+        mesh_file->make({boundaries.begin(), boundaries.end()},
+                        {regions.begin(), regions.end()},
+                        mesh);
       }
     else
       make_geometry(parameters.scene, here, mesh);
@@ -751,6 +748,23 @@ namespace Friction
       contacts.begin(), contacts.end(), [](const auto &condition) {
         return condition.has_boundary();
       });
+  }
+
+
+
+  template <int dim>
+  std::vector<types::boundary_id>
+  Scene<dim>::boundary_ids() const
+  {
+    std::vector<types::boundary_id> ids;
+    const auto                      add = [&](const auto &conditions) {
+      for (const auto &condition : conditions)
+        ids.push_back(condition.boundary_id);
+    };
+    add(contacts);
+    add(dirichlet);
+    add(tractions);
+    return ids;
   }
 
 

@@ -309,6 +309,10 @@ namespace Friction
     /// The number of conditions that have a boundary.
     unsigned int n_contact_boundaries() const;
 
+    /// The boundary ids of all conditions, in their order; an invalid one of a
+    /// contact condition that has no boundary.
+    std::vector<types::boundary_id> boundary_ids() const;
+
     /// The condition of a part of the boundary; null if it may touch nothing.
     const ContactCondition<dim> *contact_on(const types::boundary_id id) const;
 

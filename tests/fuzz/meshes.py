@@ -6,7 +6,7 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(os.path.dirname(HERE), 'program'))
-from wrong_input import write_mesh  # noqa: E402
+from gmsh_writer import write_mesh  # noqa: E402
 
 FORMATS = [(version, binary) for version in ('2.2', '4.1') for binary in (False, True)]
 # Gmsh's types that can be written; others, which are points, are left out.
