@@ -133,6 +133,14 @@ namespace Friction
       if (!(nu > -1. && nu < .5))
         throw InputError(sentence +
                          ", but it must lie strictly between -1 and 1/2.");
+      // Against one of shear and volume the body is then ten thousand million
+      // times as stiff as against the other, of which few digits are left.
+      constexpr double closest = 5e-11;
+      if (nu < -1. + closest || nu > .5 - closest)
+        throw InputError(sentence + ", which is so close to " +
+                         (nu > 0. ? "1/2" : "-1") +
+                         " that few digits of stresses would be left; take one "
+                         "that is farther from it than 5e-11.");
     }
 
 
@@ -376,15 +384,17 @@ namespace Friction
                          " is 'surface', but there is none; set '" +
                          path("Function") + "'.");
       const auto is_zero = [](const std::vector<double> &v) {
-        return std::all_of(
-          v.begin(), v.end(), [](const double c) { return c == 0.; });
+        return std::all_of(v.begin(), v.end(), [](const double c) {
+          return std::abs(c) < 1. / largest_number;
+        });
       };
       if (!obstacle.normal.empty() && is_zero(obstacle.normal))
         throw InputError(values.subject(path("Normal")) +
-                         " is zero; give a direction.");
+                         " is zero, or below 1e-30; give a direction.");
       if (std::any_of(obstacle.axes.begin(), obstacle.axes.end(), is_zero))
         throw InputError(values.subject(path("Axes")) +
-                         " contains a zero vector; give directions.");
+                         " contains a vector that is zero, or below 1e-30; "
+                         "give directions.");
     }
 
 
@@ -450,6 +460,19 @@ namespace Friction
 
 
 
+    // The sentence on an entry that has been set in vain, and why it is in
+    // vain.
+    std::string
+    not_used(const SceneFile   &values,
+             const std::string &path,
+             const std::string &reason)
+    {
+      return "Warning: " + values.subject(path) + " is not used, since " +
+        reason + ".";
+    }
+
+
+
     // Entries that have been set, and that nothing uses in this scene: most
     // likely another entry is not what it should be.
     std::vector<std::string>
@@ -469,9 +492,10 @@ namespace Friction
         std::string wanted;
         for (const std::string &choice : choices)
           wanted += (wanted.empty() ? "'" : " or '") + choice + "'";
-        warnings.push_back("Warning: " + values.subject(path) +
-                           " is not used, since '" + other + "' is '" +
-                           values.get(other) + "' and not " + wanted + ".");
+        warnings.push_back(not_used(values,
+                                    path,
+                                    "'" + other + "' is '" + values.get(other) +
+                                      "' and not " + wanted));
       };
 
       const std::string geometry = "Scene/Geometry";
@@ -565,9 +589,8 @@ namespace Friction
       std::vector<std::string> warnings;
       for (const std::string &name : names)
         if (values.is_changed(name))
-          warnings.push_back("Warning: " + values.subject(name) +
-                             " is not used, since the scene is one of two "
-                             "dimensions.");
+          warnings.push_back(
+            not_used(values, name, "the scene is one of two dimensions"));
       return warnings;
     }
 

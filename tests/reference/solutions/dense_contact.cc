@@ -1,4 +1,5 @@
 #include <Eigen/Sparse>
+#include <tests/reference/solutions/both_dimensions.h>
 #include <tests/reference/solutions/dense_contact.h>
 
 #include <cmath>
@@ -487,16 +488,8 @@ namespace Reference
       R -= problem.forces / E;
     R = (space.distribute.transpose() * R).eval();
 
-    double force = 0.;
-    for (const auto &node : problem.contact)
-      force = std::max(force, R.segment<2>(2 * node.node).norm());
-    for (const auto &d : problem.dirichlet)
-      force = std::max(force, std::abs(R[2 * d.node + d.component]));
-    if (force == 0.)
-      force = 1.;
-    const double length = u.size() > 0 && u.cwiseAbs().maxCoeff() > 0.
-      ? u.cwiseAbs().maxCoeff()
-      : 1.;
+    const Scales scales(problem, u, R);
+    const double force = scales.force, length = scales.length;
 
     Violations        v;
     std::vector<bool> may_touch(problem.mesh.nodes.size(), false);

@@ -1,5 +1,6 @@
 #include <Eigen/Geometry>
 #include <Eigen/Sparse>
+#include <tests/reference/solutions/both_dimensions.h>
 #include <tests/reference/solutions/dense_contact_3d.h>
 
 #include <algorithm>
@@ -381,16 +382,8 @@ namespace Reference
     if (problem.forces.size() > 0)
       R -= problem.forces / E;
 
-    double force = 0.;
-    for (const auto &node : problem.contact)
-      force = std::max(force, R.segment<3>(3 * node.node).norm());
-    for (const auto &d : problem.dirichlet)
-      force = std::max(force, std::abs(R[3 * d.node + d.component]));
-    if (force == 0.)
-      force = 1.;
-    const double length = u.size() > 0 && u.cwiseAbs().maxCoeff() > 0.
-      ? u.cwiseAbs().maxCoeff()
-      : 1.;
+    const Scales scales(problem, u, R);
+    const double force = scales.force, length = scales.length;
 
     Violations        v;
     std::vector<bool> may_touch(problem.mesh.nodes.size(), false);

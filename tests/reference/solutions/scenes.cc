@@ -1,9 +1,6 @@
 #include <Eigen/Geometry>
 #include <tests/reference/solutions/scenes.h>
 
-#include <algorithm>
-#include <stdexcept>
-
 namespace Reference
 {
   Mesh
@@ -33,20 +30,6 @@ namespace Reference
             {{first, first + 1, first + n_x + 1, first + n_x + 2}});
         }
     return mesh;
-  }
-
-
-
-  unsigned int
-  node_at(const Mesh &mesh, const Eigen::Vector2d &point)
-  {
-    double extent = 0.;
-    for (const auto &x : mesh.nodes)
-      extent = std::max(extent, (x - mesh.nodes[0]).norm());
-    for (unsigned int p = 0; p < mesh.nodes.size(); ++p)
-      if ((mesh.nodes[p] - point).norm() <= 1e-9 * extent)
-        return p;
-    throw std::runtime_error("Reference: no node at this point.");
   }
 
 

@@ -1,6 +1,7 @@
 #ifndef tests_reference_solutions_scenes_h
 #define tests_reference_solutions_scenes_h
 
+#include <tests/reference/solutions/both_dimensions.h>
 #include <tests/reference/solutions/dense_contact.h>
 
 #include <cmath>
@@ -21,12 +22,6 @@ namespace Reference
                  const double       length     = 1.,
                  const double       height     = 1.,
                  const double       distortion = 0.);
-
-  /**
-   * Number of the node at a point, for tests whose nodes are ordered
-   * differently. Throws if there is none within 1e-9 of the mesh's extent.
-   */
-  unsigned int node_at(const Mesh &mesh, const Eigen::Vector2d &point);
 
   /**
    * Add the consistent load of a constant traction along the edge from node a

@@ -46,20 +46,6 @@ namespace Reference
 
 
 
-  unsigned int
-  node_at(const Mesh3D &mesh, const Eigen::Vector3d &point)
-  {
-    double extent = 0.;
-    for (const auto &x : mesh.nodes)
-      extent = std::max(extent, (x - mesh.nodes[0]).norm());
-    for (unsigned int p = 0; p < mesh.nodes.size(); ++p)
-      if ((mesh.nodes[p] - point).norm() <= 1e-9 * extent)
-        return p;
-    throw std::runtime_error("Reference: no node at this point.");
-  }
-
-
-
   void
   add_traction(ContactProblem3D      &problem,
                const unsigned int     component,

@@ -1,6 +1,7 @@
 #ifndef tests_reference_solutions_scenes_3d_h
 #define tests_reference_solutions_scenes_3d_h
 
+#include <tests/reference/solutions/both_dimensions.h>
 #include <tests/reference/solutions/dense_contact_3d.h>
 #include <tests/reference/solutions/scenes.h>
 
@@ -20,12 +21,6 @@ namespace Reference
   Mesh3D box(const std::array<unsigned int, 3> &n,
              const Eigen::Vector3d             &size       = {1., 1., 1.},
              const double                       distortion = 0.);
-
-  /**
-   * Number of the node at a point, for tests whose nodes are ordered
-   * differently. Throws if there is none within 1e-9 of the mesh's extent.
-   */
-  unsigned int node_at(const Mesh3D &mesh, const Eigen::Vector3d &point);
 
   /**
    * Add the consistent load of a constant traction on all faces of cells that
