@@ -34,7 +34,11 @@ function(add_scene_tests PROGRAM BOUND)
           $<TARGET_FILE:compare_histories>
           ${DEAL_II_MPIEXEC} ${DEAL_II_MPIEXEC_NUMPROC_FLAG}
           ${_overrides})
-      label_test(${_test} LABEL quick PROCESSES ${_n})
+      set(_label quick)
+      if(_n GREATER 1)
+        set(_label full)
+      endif()
+      label_test(${_test} LABEL ${_label} PROCESSES ${_n})
       if(_n EQUAL 1)
         set_tests_properties(${_test} PROPERTIES
           FIXTURES_SETUP ${PROGRAM}.${_name})
