@@ -14,8 +14,10 @@ cd "$work" || exit 1
 failures=0
 
 # Open MPI without a daemon for a single process, which would take time and write
-# messages of its own.
+# messages of its own. Without one, programs of other tests would have the same directory
+# for their files.
 export OMPI_MCA_ess_singleton_isolated=1
+export TMPDIR="$work"
 
 # verdict NAME PROBLEM: an empty problem is none.
 verdict()

@@ -1,10 +1,10 @@
 # What ctest -L can choose from. Each test has one of these labels, and the name of
 # its folder:
 #
-#   quick      the mathematics of every part, and the scenes on small meshes, on one
-#              and two processes
-#   full       what takes longer: more processes, solvers on finer meshes, histories, bad
-#              input
+#   quick      the mathematics of every part, on one and two processes, and the scenes
+#              on small meshes, on one
+#   full       what takes longer: more processes, solvers on finer meshes and of hard
+#              problems, histories, bad input
 #
 # and in trees in release mode only, whose programs are those that a user has:
 #
@@ -126,6 +126,15 @@ function(pickup_tests)
       set(_processes ${CMAKE_MATCH_1})
     endif()
     label_test(${_test} LABEL ${_label} PROCESSES ${_processes} BUILDS)
+    # A single process of Open MPI 4 starts a daemon, unless it is told that it will
+    # not want others. Programs beside it would have the same directory then.
+    if(_processes EQUAL 1)
+      string(MAKE_C_IDENTIFIER ${_test} _directory)
+      set(_directory ${CMAKE_CURRENT_BINARY_DIR}/files_of_mpi/${_directory})
+      file(MAKE_DIRECTORY ${_directory})
+      set_property(TEST ${_test} APPEND PROPERTY ENVIRONMENT
+        OMPI_MCA_ess_singleton_isolated=1 TMPDIR=${_directory})
+    endif()
   endforeach()
   foreach(_name ${_pickup_FULL})
     if(NOT _name IN_LIST _found AND NOT TEST_PICKUP_REGEX)
