@@ -485,6 +485,29 @@ def check_expressions():
             report(True, f"expression '{text}' is none")
 
 
+def check_tolerance(directory):
+    """What is no tolerance does not confirm anything."""
+    for tolerance in "nan", "inf", "0", "-1", "0.2":
+        status, out, err = verify(directory, "--tolerance", tolerance)
+        report(status == 2 and not out and "must be above 0 and at most 0.1" in err,
+               f"tolerance {tolerance}", out + err)
+
+
+def check_glue(directory):
+    """A bound of friction that is given and beyond all stresses is no unit of theirs."""
+    run("tresca", directory, ["Contact/Friction bound=1e6"])
+    status, out, err = verify(directory)
+    report(status == 0, "glue: unchanged", out + err)
+    path = last_file(directory)
+    nodes = Level(path).contact_nodes
+    with h5py.File(path, "r+") as file:
+        u = file["displacement"][()]
+        u[nodes[len(nodes) // 2]][0] += 1e-4 * np.abs(u).max()
+        file["displacement"][...] = u
+    status, out, err = verify(directory)
+    report(status == 1, "glue: a displacement moved", out + err)
+
+
 def main():
     check_expressions()
     with tempfile.TemporaryDirectory() as folder:
@@ -503,6 +526,8 @@ def main():
         check_stale(work)
         check_unknown(work)
         check_names(work)
+        check_tolerance(work / "hertz")
+        check_glue(work / "glue")
     sys.exit(failures > 0)
 
 
