@@ -528,6 +528,11 @@ namespace StepFriction2d
           }
         if (last || !mark_cells(estimate))
           {
+            // The last question: do all forces on the body balance? Each node
+            // may be in equilibrium, and the whole not, where stresses are
+            // lost among rounding errors.
+            if (!output.check_solution(discretization, displacement, state))
+              return false;
             if (scene.load_step() + 1 == scene.n_load_steps())
               {
                 output.check_end(discretization, displacement, state);

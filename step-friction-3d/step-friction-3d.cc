@@ -217,17 +217,22 @@ namespace StepFriction3d
       }
     if (nest.report().converged && !nest.is_last())
       output.nothing_to_refine(nest.state());
-    while (nest.report().converged && nest.begin_next_load_step())
+    bool is_solved = output.check_solution(nest);
+    while (is_solved && nest.begin_next_load_step())
       {
         output.begin_load_step(nest.scene());
         output.save_checkpoint(nest);
         solve(nest, output);
+        is_solved = output.check_solution(nest);
       }
 
-    output.add_end(nest);
-    if (nest.report().converged)
-      output.console().note(describe_forces(nest));
-    return nest.report().converged;
+    if (is_solved)
+      {
+        output.check_end(
+          nest.discretization(), nest.displacement(), nest.state());
+        output.console().note(describe_forces(nest));
+      }
+    return is_solved;
   }
 } // namespace StepFriction3d
 

@@ -6,6 +6,13 @@
 
 namespace Friction
 {
+  /** The tolerance that the certificates of all levels of a run have: that of
+   * the settings, or a hundredth where the mesh says when to stop and that is
+   * more. */
+  double loosest_certificate_tolerance(const SolverSettings &settings);
+
+
+
   /**
    * Says when a solution is as good as its mesh: when the error of the
    * iteration is a tenth of that of the discretisation, so that going on would

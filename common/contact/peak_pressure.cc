@@ -1,3 +1,4 @@
+#include <common/contact/contact_forces.h>
 #include <common/contact/peak_pressure.h>
 #include <common/parallel/reductions.h>
 
@@ -6,6 +7,20 @@
 
 namespace Friction
 {
+  namespace
+  {
+    // How large the force of friction at a contact node is.
+    template <int dim>
+    double
+    friction(const ContactNode<dim> &node, const VectorType &residual)
+    {
+      const Tensor<1, dim> force = contact_force(node, residual);
+      return (force - (force * node.normal()) * node.normal()).norm();
+    }
+  } // namespace
+
+
+
   template <int dim>
   PeakPressure<dim>::PeakPressure(const DiscreteProblem<dim> &problem,
                                   const VectorType           &u,
@@ -30,8 +45,10 @@ namespace Friction
           }
         if (problem.has_friction() && !problem.has_coulomb_friction(node))
           stress = std::max(stress,
-                            problem.effective_coefficient(node) *
-                              state.normal_force(p) / node.measure);
+                            std::min(problem.effective_coefficient(node) *
+                                       state.normal_force(p),
+                                     friction(node, residual)) /
+                              node.measure);
       }
     const MPI_Comm comm = problem.communicator();
     touching            = sum_over_processes(touching, comm);

@@ -12,10 +12,11 @@ namespace Friction
    * The unit of a Certificate.
    *
    * The peak pressure is the largest normal stress at a node in contact, or the
-   * largest given bound of friction, and counts as no less than a thousandth of
-   * the largest stress_inside() at a node that may get into contact: a node
-   * that barely touches is no measure of anything. If no node touches, the
-   * largest stress_inside() of all nodes takes its place.
+   * largest stress of friction whose bound is given (and not that bound, which
+   * may be anything where all is to be glued), and counts as no less than a
+   * thousandth of the largest stress_inside() at a node that may get into
+   * contact: a node that barely touches is no measure of anything. If no node
+   * touches, the largest stress_inside() of all nodes takes its place.
    */
   template <int dim>
   class PeakPressure

@@ -61,10 +61,18 @@ namespace Friction
      * warnings_at_start(). */
     void check_start(const Discretization<dim> &discretization);
 
-    /** The same for the last solution, see warnings_at_end(), whose quantities
-     * it prints with their errors, see set_errors(), and its forces on the body
-     * if they have been recorded. Throws InputError if its
-     * displacements are a thousand times larger than the body. */
+    /** Whether this is a solution, although each node obeys its law, see
+     * check_solution(). If not, or if it is a poor one, says so. */
+    bool check_solution(const Discretization<dim> &discretization,
+                        const VectorType          &displacement,
+                        const ContactState        &state);
+
+    /** The same, or if a level could not be solved, what add_failure() says. */
+    bool check_solution(const NestedIteration<dim> &nest);
+
+    /** What should be known about the last solution: its quantities with their
+     * errors, see set_errors(), its forces on the body if they have been
+     * recorded, and the warnings of warnings_at_end(). */
     void check_end(const Discretization<dim> &discretization,
                    const VectorType          &displacement,
                    const ContactState        &state);
@@ -109,10 +117,6 @@ namespace Friction
     void add_failure(const unsigned int  level,
                      const Scene<dim>   &scene,
                      const SolverReport &report);
-
-    /** The same, or if it could be solved, the quantities of the last solution
-     * and the warnings that it gives reason for. */
-    void add_end(const NestedIteration<dim> &nest);
 
     /**
      * Write a checkpoint, if the parameters want any.

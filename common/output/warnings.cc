@@ -1,13 +1,17 @@
 #include <common/output/mesh_warnings.h>
 #include <common/output/warnings.h>
+#include <common/parallel/collective_error.h>
 #include <common/parallel/reductions.h>
 #include <common/printable.h>
 
 #include <deal.II/base/mpi.h>
 
+#include <deal.II/lac/vector.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -293,6 +297,41 @@ namespace Friction
 
 
 
+    // Coordinates have sixteen digits. What is left of them for the shape of a
+    // cell is less the farther it is from the origin.
+    template <int dim>
+    void
+    warn_of_digits(const Triangulation<dim> &mesh,
+                   const MPI_Comm            communicator,
+                   std::vector<std::string> &warnings)
+    {
+      double     farthest = 0., shortest = std::numeric_limits<double>::max();
+      Point<dim> where;
+      for (const auto &cell : mesh.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            for (const unsigned int v : cell->vertex_indices())
+              farthest = std::max(farthest, cell->vertex(v).norm());
+            for (const unsigned int l : cell->line_indices())
+              if (cell->line(l)->diameter() < shortest)
+                {
+                  shortest = cell->line(l)->diameter();
+                  where    = cell->line(l)->center();
+                }
+          }
+      farthest           = Utilities::MPI::max(farthest, communicator);
+      const auto inverse = largest<dim>(communicator, 1. / shortest, where);
+      if (farthest * inverse.first > 1e9)
+        warnings.push_back(
+          "Warning: the edge of a cell at " + coordinates(inverse.second) +
+          " has a length of " + number(1. / inverse.first) +
+          ", while coordinates are as large as " + number(farthest) +
+          ", so that few of their digits are left for it; move the mesh closer "
+          "to the origin, or make its edges more equal.");
+    }
+
+
+
     // A body that is loaded in a single point gives way without limit the finer
     // the mesh is, since its stresses are those of a force on a needle's point.
     template <int dim>
@@ -394,6 +433,17 @@ namespace Friction
         discretization.dof_handler().get_triangulation());
     const MPI_Comm communicator = discretization.constraints().communicator();
 
+    // What is not a number in a vertex of this mesh is to be known before
+    // anything is solved.
+    if (const auto exact = scene.exact_displacement())
+      on_all_processes(communicator, [&]() {
+        Vector<double> value(dim);
+        for (const auto &cell : mesh.active_cell_iterators())
+          if (cell->is_locally_owned())
+            for (const unsigned int v : cell->vertex_indices())
+              exact->vector_value(cell->vertex(v), value);
+      });
+
     std::vector<std::string> warnings = parameters.warnings;
     if (dim == 2)
       warnings.insert(warnings.end(),
@@ -405,6 +455,7 @@ namespace Friction
       warnings.push_back(about_scene);
     warn_of_useless_tractions(scene, warnings);
     warn_of_materials(discretization, warnings);
+    warn_of_digits<dim>(mesh, communicator, warnings);
     warn_of_contradictions(mesh, scene, discretization.body_size(), warnings);
     for (const std::string &sentence : warnings_about_cuts(mesh))
       warnings.push_back(sentence);

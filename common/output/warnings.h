@@ -22,6 +22,8 @@ namespace Friction
    * - tractions where all displacements are prescribed;
    * - materials for which elements lock, or which are so far apart that
    *   rounding errors of one are the stiffness of the other;
+   * - edges of cells so short, or a body so far from the origin, that
+   *   coordinates have lost digits;
    * - displacements of two boundaries that contradict each other in a node;
    * - a contact boundary from a mesh file that is a polygon and stays one,
    *   however fine the mesh;

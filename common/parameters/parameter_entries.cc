@@ -157,7 +157,11 @@ namespace Friction
        "1",
        number,
        "Positive [stress]. The body is isotropic; in 2D plane strain."},
-      {"Material", "Poisson ratio", "0.3", number, "Between -1 and 1/2."},
+      {"Material",
+       "Poisson ratio",
+       "0.3",
+       number,
+       "Between -1 and 1/2, and farther from both than 5e-11."},
       {"Material",
        "Volumetric strain",
        "pointwise",
@@ -193,7 +197,8 @@ namespace Friction
        "Normal",
        "",
        text,
-       "Normal of the plane, into the obstacle, of any length; straight down, "
+       "Normal of the plane, into the obstacle, of any length from 1e-30 on; "
+       "straight down, "
        "against the last coordinate, if empty."},
       {"Obstacle",
        "Centers",
@@ -205,7 +210,8 @@ namespace Friction
        "Axes",
        "",
        text,
-       "3D: direction of the axis of each rod, separated by ';'."},
+       "3D: direction of the axis of each rod, of any length from 1e-30 on, "
+       "separated by ';'."},
       {"Obstacle",
        "Radius",
        "1",

@@ -377,6 +377,9 @@ namespace Friction
     while (std::getline(file, line))
       {
         ++n_lines;
+        // What some editors begin a file with.
+        if (n_lines == 1 && line.rfind("\xef\xbb\xbf", 0) == 0)
+          line.erase(0, 3);
         const std::string where =
           file_name + ":" + Utilities::int_to_string(n_lines);
 

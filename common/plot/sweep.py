@@ -213,7 +213,7 @@ def last_words(path, status):
     """The line with which a run has said why it failed."""
     lines = [line.strip() for line in
              path.read_text(encoding="utf-8", errors="replace").splitlines()]
-    for beginning in (r"step-friction-\dd: ", "No convergence"):
+    for beginning in (r"step-friction-\dd: ", "No (convergence|solution)"):
         for line in reversed(lines):
             if re.match(beginning, line):
                 return re.sub(r"^step-friction-\dd: ", "", line)[:300]

@@ -67,9 +67,12 @@ namespace Friction
         "about "
         "the\n"
         "scene, without solving or writing anything. Exit status: 0 solved, 1 "
-        "not converged, 2 bad input, 3 "
-        "an error of\n"
-        "the program.\n";
+        "no "
+        "solution\n"
+        "(not converged, or forces that do not balance), 2 bad input, or "
+        "output "
+        "that cannot\n"
+        "be written, 3 an error of the program.\n";
     }
 
 
@@ -139,6 +142,16 @@ namespace Friction
       return 3;
     };
 
+    // What is printed is a part of the results.
+    const auto finish = [&](const int status) {
+      if (!speaks || std::cout.flush())
+        return status;
+      std::cerr << program.name
+                << ": standard output cannot be written; is its disk full?"
+                << std::endl;
+      return 2;
+    };
+
     try
       {
         std::vector<std::string> arguments(argv + 1, argv + argc);
@@ -148,7 +161,7 @@ namespace Friction
             if (speaks)
               (arguments.empty() ? std::cerr : std::cout)
                 << usage(program) << std::flush;
-            return arguments.empty() ? 2 : 0;
+            return finish(arguments.empty() ? 2 : 0);
           }
         if (arguments[0] == "--version")
           {
@@ -161,13 +174,13 @@ namespace Friction
                         << "release mode"
 #endif
                         << ')' << std::endl;
-            return 0;
+            return finish(0);
           }
         if (arguments[0] == "--parameters")
           {
             if (speaks)
               print_default_parameters(std::cout);
-            return 0;
+            return finish(0);
           }
 
         on_all_processes(MPI_COMM_WORLD, [&]() { check_options(arguments); });
@@ -200,7 +213,7 @@ namespace Friction
               check_scene<2>(parameters, std::cout, MPI_COMM_WORLD);
             else
               check_scene<3>(parameters, std::cout, MPI_COMM_WORLD);
-            return 0;
+            return finish(0);
           }
         const bool solved = run(parameters, start);
         if (speaks && parameters.output.times)
@@ -210,7 +223,7 @@ namespace Friction
             if (parameters.output.profile)
               std::cout << clock.describe() << std::endl;
           }
-        return solved ? 0 : 1;
+        return finish(solved ? 0 : 1);
       }
     catch (const InputError &error)
       {

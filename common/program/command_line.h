@@ -31,9 +31,10 @@ namespace Friction
    *
    * The return value is the exit status, which is part of the result:
    * - 0: all levels have been solved and certified;
-   * - 1: some level has not; its results are there to be looked at, but not to
-   *   be believed;
-   * - 2: the input was at fault;
+   * - 1: some level has not, or the last one is no solution, see
+   *   check_solution(); its results are there to be looked at, but not to be
+   *   believed;
+   * - 2: the input was at fault, or what it asks for cannot be written;
    * - 3: what should never happen.
    *
    * With several processes only the first one prints. An InputError has to
@@ -41,7 +42,7 @@ namespace Friction
    * of one process while the others wait for its data, so that it ends all of
    * them at once, with the same status 3.
    *
-   * @param run  does the work and says whether all levels were solved.
+   * @param run  does the work and says whether there is a solution.
    */
   int
   run_program(int            argc,

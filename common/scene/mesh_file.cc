@@ -1,4 +1,5 @@
 #include <common/input_error.h>
+#include <common/parameters/expressions.h>
 #include <common/printable.h>
 #include <common/scene/mesh_file.h>
 
@@ -255,6 +256,13 @@ namespace Friction
           largest_z  = std::max(largest_z, file.nodes[v][2]);
           size       = std::max(size, p.distance(vertices[0]));
         }
+    if (!(size >= 1. / largest_number && size <= largest_number))
+      {
+        std::ostringstream text;
+        text << "has a size of " << size
+             << ", which must be between 1e-30 and 1e30; choose other units.";
+        fail(text.str());
+      }
     if (dim == 2 && largest_z - smallest_z > 1e-6 * size)
       {
         std::ostringstream text;

@@ -178,8 +178,8 @@ class Measurements:
         history = directory / "history.h5"
         if history.exists():
             history.unlink()
-        # Status 1 says that a level has not been solved, after its history was
-        # written: a result like any other.
+        # Status 1 says that a level has not been solved, or is no solution, after its
+        # history was written: a result like any other.
         status = run([self.programs[what.dim],
                       self.scene(what.dim, what.scene),
                       *what.overrides,

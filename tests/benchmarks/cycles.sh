@@ -19,7 +19,7 @@ row() {
     awk -v label="$label" '
       $1 ~ /^[0-9]+$/ && NF >= 10 {cycles = cycles sprintf(" %3d", $7)
                                    seconds += $10; dofs = $3}
-      /^No convergence/ {failed = ", fails"}
+      /^No (convergence|solution)/ {failed = ", fails"}
       END {printf "%-44s%s  | %5.1f s, %d dofs%s\n", label, cycles, seconds,
                   dofs, failed}'
 }

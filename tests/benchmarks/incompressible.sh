@@ -16,7 +16,7 @@ run() {
   "$@" Solver/Safeguards=false Output/Fields=false Output/Verbosity=levels Refinement/Estimate\ error=false \
     "Output/Directory=$directory" 'Solver/Maximum cycles=200' |
     awk '$1 ~ /^[0-9]+$/ && NF >= 10 {cycles = $7; rate = $8; seconds = $10}
-         /^No convergence/ {failed = 1}
+         /^No (convergence|solution)/ {failed = 1}
          END {if (failed) printf "       fails       ";
               else printf "%4d  %5.3f %6.2f s", cycles, rate, seconds}'
 }

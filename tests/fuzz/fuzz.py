@@ -17,7 +17,7 @@ input is a finding if the run
 - prints a stack trace, or a report of a sanitizer,
 - refuses the input (exit status 2) without a message, or with one of more than three
   lines or a thousand characters, or that does not end like a sentence, or of several
-  processes; or does not converge (1) without saying so,
+  processes; or finds no solution (1) without saying so,
 - prints "nan" or "inf" in the table of a run with exit status 0, or leaves no results,
 - refuses the input before a level has been solved, and leaves other files in its
   directory than there were; or leaves files there that are not finished, its lock, a
@@ -235,7 +235,7 @@ class Fuzzer:
             return 'signal or status %d' % status
         if status == 3:
             return 'error of the program'
-        if status == 1 and not re.search('^No convergence on level', out, re.M):
+        if status == 1 and not re.search('^No (convergence on level|solution)', out, re.M):
             return 'no convergence without a word'
         if status == 0 and any(re.search(r'\b(nan|inf)\b', ' '.join(row))
                                for row in rows(out)):

@@ -51,7 +51,8 @@ class Runner:
         number, name, scene, overrides, expected, patterns = case
         result = self.run(scene, overrides)
         problems = []
-        if result.returncode != (2 if expected.endswith('error') else 0):
+        status = 2 if expected.endswith('error') else 1 if expected == 'unsolved' else 0
+        if result.returncode != status:
             problems.append('exit status %d' % result.returncode)
         if expected.endswith('error'):
             lines = result.stderr.splitlines()
@@ -71,6 +72,12 @@ class Runner:
                     if not is_late or '.part' in f]
             if left:
                 problems.append('files left: ' + ', '.join(left))
+        elif expected == 'unsolved':
+            for pattern in patterns:
+                if len(re.findall(pattern, result.stdout)) != 1:
+                    problems.append('not found once: ' + pattern)
+            if re.search('^(Peak|Forces)', result.stdout, re.M):
+                problems.append('something of a solution')
         else:
             warnings = [l for l in result.stdout.splitlines()
                         if l.startswith('Warning:')]
@@ -155,6 +162,31 @@ class Runner:
                          [] if result.returncode == 2 and name in result.stderr and
                          result.stderr.count('\n') == 1 else ['no error'], result)
 
+    def check_streams(self):
+        """A scene that begins with the mark of UTF-8; and standard output that is full,
+        where the system has such a file."""
+        self.run('moved', {})
+        with open('scene.prm', 'rb') as f:
+            text = f.read()
+        with open('scene.prm', 'wb') as f:
+            f.write(b'\xef\xbb\xbf' + text)
+        result = subprocess.run([self.programs[2], 'scene.prm', '--check'],
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                universal_newlines=True)
+        self.verdict('b: a scene with the mark of UTF-8',
+                     ['exit status'] if result.returncode else [], result)
+        if os.path.exists('/dev/full'):
+            for arguments in ['scene.prm'], ['--help']:
+                with open('/dev/full', 'w') as full:
+                    result = subprocess.run([self.programs[2], *arguments], stdout=full,
+                                            stderr=subprocess.PIPE,
+                                            universal_newlines=True)
+                result.stdout = ''
+                self.verdict('b: standard output that is full, ' + arguments[0],
+                             [] if result.returncode == 2 and
+                             'standard output cannot be written' in result.stderr
+                             else ['no error'], result)
+
     def check_check(self):
         result = self.run('moved', {}, '--check')
         self.verdict('--check solves and writes nothing',
@@ -175,10 +207,12 @@ class Runner:
 
 
 def main():
-    # Each program is on one process, and need not start a daemon for others.
+    # Each program is on one process, and need not start a daemon for others; without
+    # one, programs of other tests would have the same directory for their files.
     os.environ['OMPI_MCA_ess_singleton_isolated'] = '1'
     runner = Runner({2: os.path.abspath(sys.argv[1]), 3: os.path.abspath(sys.argv[2])})
     work = tempfile.mkdtemp()
+    os.environ['TMPDIR'] = work
     try:
         os.chdir(work)
         make_meshes()
@@ -189,6 +223,7 @@ def main():
         runner.check_restart()
         runner.check_file_that_is_a_directory()
         runner.check_check()
+        runner.check_streams()
     finally:
         os.chdir('/')
         shutil.rmtree(work)

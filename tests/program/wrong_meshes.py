@@ -32,6 +32,13 @@ def make_meshes():
         write_mesh('cube-%s.msh' % ('binary' if binary else 'text'), CUBE,
                    FACES + [(HEX, 10, tuple(range(1, 9)))],
                    [(2, 4, 'floor'), (2, 5, 'top')], '4.1', binary)
+    # Far away, in two cells one of which is a needle, and tiny.
+    write_mesh('far.msh', moved(SQUARE, 1e10, 0, 0), square)
+    write_mesh('needle.msh', [(x, y, 0) for y in (0, 1) for x in (0, 1e-10, 1)],
+               [(LINE, 1, (4, 1)), (LINE, 3, (1, 2)), (LINE, 3, (2, 3)),
+                (LINE, 2, (3, 6)), (LINE, 4, (6, 5)), (LINE, 4, (5, 4)),
+                (QUAD, 10, (1, 2, 5, 4)), (QUAD, 10, (2, 3, 6, 5))])
+    write_mesh('tiny.msh', [tuple(1e-160 * c for c in p) for p in SQUARE], square)
     # Two blocks that have nothing, a vertex, or an edge in common.
     other = {1: 6, 2: 7, 3: 8, 4: 9, 10: 11}
     write_mesh('two.msh', SQUARE + moved(SQUARE, 2, 0, 0),

@@ -7,6 +7,8 @@ A case is a scene with overrides, and what is expected of it:
   have left files, complete ones, of those before;
 - warning: exit status 0, and the only lines that begin with "Warning:" are those of
   the patterns, once each;
+- unsolved: exit status 1, and on standard output a line of the pattern, but neither a
+  pressure nor forces;
 - good: exit status 0 without a warning.
 """
 SCENES = {
@@ -99,6 +101,38 @@ CASES = [
     (1, 'load that tips the body over', 'pressed',
      {D: '0: 0, free', T: '', B: '0, 0.02*(x-1.1)'}, 'good', []),
     (1, 'load towards the obstacle', 'pressed', {}, 'good', []),
+    # Solved to the last digit at each node, and nothing but rounding errors.
+    (1, 'a beam ten thousand times as long as thick', 'moved',
+     {'Scene/Size': '10000, 1', 'Scene/Subdivisions': '2500, 1',
+      'Obstacle/Point': '0, -1', 'Refinement/Initial refinements': '0',
+      D: '0: 0, 0', T: '1: 0, -1e-12'}, 'unsolved',
+     ['No solution: forces on the body balance to .* of their size']),
+    (1, 'a Poisson ratio next to 1/2', 'moved',
+     {'Material/Poisson ratio': '0.4999999999999999',
+      'Material/Volumetric strain': 'mean'}, 'error',
+     ["'Material/Poisson ratio' is 0.4999999999999999, which is so close to 1/2 that"]),
+    (1, 'a Poisson ratio next to -1', 'moved',
+     {'Material/Poisson ratio': '-0.999999999999'}, 'error', ['so close to -1 that']),
+    (1, 'a region with a Poisson ratio next to 1/2', 'moved',
+     {R: 'where y<0.5: 1, 0.499999999999999, mean'}, 'error',
+     ["region 'where y<0.5' has 0.499999999999999 as Poisson ratio, which is so close"]),
+    (1, 'a Poisson ratio of .4999999999', 'moved',
+     {'Material/Poisson ratio': '0.4999999999',
+      'Material/Volumetric strain': 'mean'}, 'good', []),
+    (1, 'a moment, and nothing in contact', 'moved',
+     {D: '0: 0, 0', T: '1: 1e-3*(y-0.5), 0', 'Obstacle/Point': '0, -1'}, 'warning',
+     ['no node is in contact']),
+    (1, 'a load that is taken away but for rounding', 'pressed',
+     {T: '3: 0, -0.01*sin(pi*t)', 'Load steps/Times': '0.5, 1'}, 'good', []),
+    (4, 'an exact displacement that is none somewhere', 'moved',
+     {'Scene/Exact displacement': 'sqrt(1.99-x), 0'}, 'error',
+     [r"'Scene/Exact displacement': 'sqrt\(1.99-x\), 0' is not a number at"]),
+    (1, 'moved by more than a thousand times its size', 'moved',
+     {D: '3: 0, -1e10'}, 'unsolved', ['would move by more than a thousand times']),
+    # A platen that is free of the obstacle, with no force on it.
+    (1, 'no force, away from the obstacle', 'moved',
+     {D: '3: 0, 0.5', 'Boundary conditions/Force': '3: free, 0'}, 'warning',
+     ['the largest displacement', 'no node is in contact']),
     (1, 'load that only a finer mesh sees', 'pressed',
      {T: '3: 0, (abs(x-.6)<.1 ? -.001 : 0)'}, 'good', []),
     (1, 'load that a finer mesh sees the other way round', 'pressed',
@@ -664,7 +698,25 @@ CASES += [
      mesh('twice', **{R: '7: 2, .3; 1: 3, .3'}), 'error',
      ['has a cell number . around .* in the groups 1 and 7, and the scene speaks of '
       'both']),
+    # Meshes of which few digits are left.
+    (5, 'far from the origin', 'mesh', mesh('far'), 'warning',
+     ['coordinates are as large as 1e.10, so that few of their digits are left']),
+    (5, 'a needle', 'mesh', mesh('needle', **{D: '1: 0, free', T: '4: 0, -1e-4'}),
+     'warning', ['has a length of .*e-1[01], while coordinates are as large as']),
+    (5, 'a tiny mesh', 'mesh', mesh('tiny', **{D: '4: 1e-162, -1e-162'}), 'error',
+     ['has a size of 1.*e-160, which must be between 1e-30 and 1e30']),
     # Obstacles.
+    (18, 'a normal whose square is zero', 'moved', {'Obstacle/Normal': '0, -1e-200'},
+     'error', ["'Obstacle/Normal' is zero, or below 1e-30; give a direction"]),
+    (18, 'an axis whose square is zero', 'pressed 3d',
+     {'Obstacle/Kind': 'rods', 'Obstacle/Centers': '.5, .5, -.1',
+      'Obstacle/Radius': '.1', 'Obstacle/Axes': '0, 1e-200, 0'}, 'error',
+     ["'Obstacle/Axes' contains a vector that is zero, or below 1e-30"]),
+    # What is to be glued is measured by its stresses and not by what glue could bear.
+    (18, 'glue', 'moved',
+     {'Contact/Friction law': 'Tresca', 'Contact/Friction bound': '1e6',
+      'Solver/Inner tolerance': '0.5'}, 'warning',
+     ["'Contact/Friction coefficient' is not used"]),
     (18, 'a ball in two dimensions', 'moved',
      {'Obstacle/Kind': 'balls', 'Obstacle/Centers': '0, -1'}, 'error',
      ["'balls', which there are in three dimensions only"]),

@@ -28,7 +28,8 @@ A row per level:
 
 Forces at nodes are relative to that of the peak contact pressure, lengths count as the
 forces that they need: the units of the certificate. All but 'given', which is exact, may
-be as large as the tolerance of the certificate in the scene, or X. The certificate itself
+be as large as the tolerance of the certificate in the scene, or X, above 0 and up to
+0.1. The certificate itself
 must not be worse than reported.
 
 Exit status: 0 confirmed, 1 refuted, 2 if there is nothing that could be read.
@@ -133,6 +134,10 @@ def main():
     parser.add_argument("--mesh", type=Path, metavar="FILE",
                         help="the scene's mesh file, for names of groups")
     options = parser.parse_args()
+    if options.tolerance is not None and not 0 < options.tolerance <= .1:
+        print(f"friction-verify: the tolerance is {options.tolerance:g}, but it must be "
+              "above 0 and at most 0.1.", file=sys.stderr)
+        return 2
     try:
         return verify(options.directory, options.tolerance, options.mesh)
     except NotReadable as error:

@@ -126,7 +126,7 @@ class Recomputed:
         self.peak_pressure = np.max((self.pressing / self.measure)[touches], initial=0)
         given = self.law == "Tresca"
         self.peak_pressure = max(self.peak_pressure, np.max(
-            (self.bound / self.measure)[given], initial=0))
+            (np.minimum(self.bound, self.drag) / self.measure)[given], initial=0))
         rows = Rows(level, nodes, self.hanging)
         inside = rows.forces_of_neighbours(self.u) / face[nodes]
         if not touches.any():
