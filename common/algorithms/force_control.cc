@@ -2,7 +2,6 @@
 #include <common/algorithms/initial_guess.h>
 #include <common/contact/contact_forces.h>
 #include <common/contact/force_balance.h>
-#include <common/contact/solution_check.h>
 #include <common/dense_algebra.h>
 #include <common/parallel/reductions.h>
 #include <common/parameters/wrong_number.h>
@@ -331,10 +330,7 @@ namespace Friction
     double accuracy = compliance.size() > 0 && may_be_rough ? rough : 0.;
     if (compliance.size() == 0)
       begin_with_stiffness_of_body(discretization, dofs);
-    wanted                 = given_forces();
-    const double stiffness = largest_stiffness(discretization);
-    const double n_nodes   = sum_over_processes(
-      double(discretization.constraints().n_owned_nodes()), communicator);
+    wanted                   = given_forces();
     SolverReport report      = solve_once(accuracy);
     unsigned int n_positions = 1, n_poor = 0;
     double       largest_force = 0.;
@@ -373,10 +369,13 @@ namespace Friction
       // Where no force is wanted, and the body is free of the obstacle and of
       // loads, there are no forces but what rounding leaves of those between
       // nodes, and nothing to compare them with.
-      result.is_found |= wanted.cwiseAbs().maxCoeff() == 0. &&
-        result.unit <= n_nodes *
-            std::max(rounding_of_nothing, 1e-8 * tolerance) * stiffness *
-            u.linfty_norm();
+      if (!result.is_found && wanted.cwiseAbs().maxCoeff() == 0.)
+        result.is_found =
+          result.unit <= sum_over_processes(
+                           double(discretization.constraints().n_owned_nodes()),
+                           communicator) *
+            std::max(rounding_of_nothing, 1e-8 * tolerance) *
+            discretization.largest_stiffness() * u.linfty_norm();
       return result;
     };
     const auto solve_on = [&]() {

@@ -16,6 +16,15 @@ namespace Friction
   Tensor<1, dim> contact_force(const ContactNode<dim> &p,
                                const VectorType       &residual);
 
+  /** What is left of a force on the body at a contact node without its part
+   * along the normal: friction. */
+  template <int dim>
+  Tensor<1, dim>
+  tangential_part(const ContactNode<dim> &p, const Tensor<1, dim> &force)
+  {
+    return force - (force * p.normal()) * p.normal();
+  }
+
   /** Sets the normal forces of the friction bounds to those of the displacement
    * with this residual f - A u, at nodes in contact, and to zero elsewhere; but
    * not where a bound is given. */

@@ -234,12 +234,11 @@ namespace Friction
     const std::vector<unsigned int> holders = find_holders(discretization);
     for (const ContactNode<dim> &node : discretization.contact())
       {
-        const Tensor<1, dim> force    = contact_force(node, residual);
-        const double         pressing = -force * node.normal();
-        ForceOnBody<dim>    &contact  = contacts[node.condition];
+        const Tensor<1, dim> force   = contact_force(node, residual);
+        ForceOnBody<dim>    &contact = contacts[node.condition];
         contact.total += force;
-        contact.normal += pressing;
-        contact.tangential += force + pressing * node.normal();
+        contact.normal -= force * node.normal();
+        contact.tangential += tangential_part(node, force);
       }
     for (unsigned int node = 0; node < constraints.n_owned_nodes(); ++node)
       if (!constraints.is_hanging(node))

@@ -7,20 +7,6 @@
 
 namespace Friction
 {
-  namespace
-  {
-    // How large the force of friction at a contact node is.
-    template <int dim>
-    double
-    friction(const ContactNode<dim> &node, const VectorType &residual)
-    {
-      const Tensor<1, dim> force = contact_force(node, residual);
-      return (force - (force * node.normal()) * node.normal()).norm();
-    }
-  } // namespace
-
-
-
   template <int dim>
   PeakPressure<dim>::PeakPressure(const DiscreteProblem<dim> &problem,
                                   const VectorType           &u,
@@ -44,11 +30,14 @@ namespace Friction
               std::max(stress, normal_component(node, residual) / node.measure);
           }
         if (problem.has_friction() && !problem.has_coulomb_friction(node))
-          stress = std::max(stress,
-                            std::min(problem.effective_coefficient(node) *
-                                       state.normal_force(p),
-                                     friction(node, residual)) /
-                              node.measure);
+          {
+            const Tensor<1, dim> friction =
+              tangential_part(node, contact_force(node, residual));
+            const double bound =
+              problem.effective_coefficient(node) * state.normal_force(p);
+            stress =
+              std::max(stress, std::min(bound, friction.norm()) / node.measure);
+          }
       }
     const MPI_Comm comm = problem.communicator();
     touching            = sum_over_processes(touching, comm);

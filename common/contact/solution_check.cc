@@ -120,22 +120,6 @@ namespace Friction
 
 
   template <int dim>
-  double
-  largest_stiffness(const Discretization<dim> &discretization)
-  {
-    const NodalConstraints<dim> &constraints = discretization.constraints();
-    double                       largest     = 0.;
-    for (unsigned int node = 0; node < constraints.n_owned_nodes(); ++node)
-      if (!constraints.is_hanging(node))
-        largest = std::max(
-          largest, trace<dim>(discretization.stiffness().diagonal_block(node)));
-    return max_over_processes(std::array<double, 1>{{largest}},
-                              constraints.communicator())[0];
-  }
-
-
-
-  template <int dim>
   SolutionCheck
   check_solution(const Discretization<dim> &discretization,
                  const VectorType          &displacement,
@@ -154,7 +138,7 @@ namespace Friction
       residual, discretization.loads(), displacement);
     const double missing = force_balance(discretization, residual).sum().norm();
     const Sizes  sizes   = sizes_of_forces(discretization, residual, state);
-    const double stiffness = largest_stiffness(discretization);
+    const double stiffness = discretization.largest_stiffness();
     const double before    = discretization.slip_origin() == nullptr
          ? 0.
          : discretization.slip_origin()->linfty_norm();
@@ -185,8 +169,6 @@ namespace Friction
 
 
 
-  template double        largest_stiffness(const Discretization<2> &);
-  template double        largest_stiffness(const Discretization<3> &);
   template SolutionCheck check_solution(const Discretization<2> &,
                                         const VectorType &,
                                         const ContactState &,

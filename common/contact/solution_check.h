@@ -53,14 +53,6 @@ namespace Friction
                                const VectorType          &displacement,
                                const ContactState        &state,
                                const double               tolerance);
-
-
-
-  /** The largest trace of a diagonal block of the stiffness, a force per
-   * length: with a displacement of the body it says what rounding leaves of
-   * forces between nodes. Collective. */
-  template <int dim>
-  double largest_stiffness(const Discretization<dim> &discretization);
 } // namespace Friction
 
 #endif

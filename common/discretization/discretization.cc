@@ -20,6 +20,7 @@
 #include <deal.II/numerics/vector_tools.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -314,6 +315,22 @@ namespace Friction
     for (unsigned int d = 0; d < dim; ++d)
       square += std::pow(box[d] + box[dim + d], 2);
     return std::sqrt(square);
+  }
+
+
+
+  template <int dim>
+  double
+  Discretization<dim>::largest_stiffness() const
+  {
+    double largest = 0.;
+    for (unsigned int node = 0; node < nodal_constraints->n_owned_nodes();
+         ++node)
+      if (!nodal_constraints->is_hanging(node))
+        largest =
+          std::max(largest, trace<dim>(leaf_operator.diagonal_block(node)));
+    return max_over_processes(std::array<double, 1>{{largest}},
+                              nodal_constraints->communicator())[0];
   }
 
 

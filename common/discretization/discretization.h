@@ -173,6 +173,11 @@ namespace Friction
     /** The diagonal of a box around the body. Collective. */
     double body_size() const;
 
+    /** The largest trace of a diagonal block of the stiffness, a force per
+     * length: with a displacement of the body it says what rounding leaves of
+     * forces between nodes. Collective. */
+    double largest_stiffness() const;
+
     /** A vector of zeros on the leaf mesh. */
     VectorType
     vector() const
