@@ -12,11 +12,12 @@
 // where every node is a part of its own, half of the damping is too little for
 // some.
 
+#include <common/dense_algebra.h>
 #include <common/nodes/interface_damping.h>
 
 #include <deal.II/base/mpi.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <iostream>
 
@@ -89,7 +90,7 @@ namespace
              const double       s)
   {
     // Proximal gradient steps, projected by alternation (Dykstra).
-    const double L = D.operatorNorm();
+    const double L = eigenpairs(D).values.maxCoeff();
     Value<dim>   y = x;
     for (unsigned int step = 0; step < 5000; ++step)
       {

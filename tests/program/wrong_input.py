@@ -2,7 +2,7 @@
 or solved with a warning, and nothing wrong is solved without a word. They are those of
 wrong_scenes.py, and some that take more than one run.
 
-Usage: wrong_input.py PROGRAM_2D PROGRAM_3D
+Usage: wrong_input.py PROGRAM_2D PROGRAM_3D [FORK_SERVER]
 """
 import math
 import os
@@ -11,6 +11,10 @@ import shutil
 import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)),
+                                os.pardir, 'support'))
+from started_program import StartedProgram
 
 from gmsh_writer import write_mesh
 from wrong_meshes import CELL, EDGES, SQUARE, make_meshes
@@ -36,9 +40,7 @@ class Runner:
                 f.write('subsection %s\n  set %s = %s\nend\n' % (section, name, value))
         if '--restart' not in options:
             shutil.rmtree('results', ignore_errors=True)
-        return subprocess.run([self.programs[dimension], 'scene.prm', *options],
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                              timeout=120, universal_newlines=True)
+        return self.programs[dimension].run(['scene.prm', *options])
 
     def verdict(self, name, problems, result):
         print('%-8s%s' % ('FAILED' if problems else 'ok', name))
@@ -170,16 +172,14 @@ class Runner:
             text = f.read()
         with open('scene.prm', 'wb') as f:
             f.write(b'\xef\xbb\xbf' + text)
-        result = subprocess.run([self.programs[2], 'scene.prm', '--check'],
-                                stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                universal_newlines=True)
+        result = self.programs[2].run(['scene.prm', '--check'])
         self.verdict('b: a scene with the mark of UTF-8',
                      ['exit status'] if result.returncode else [], result)
         if os.path.exists('/dev/full'):
             for arguments in ['scene.prm'], ['--help']:
                 with open('/dev/full', 'w') as full:
-                    result = subprocess.run([self.programs[2], *arguments], stdout=full,
-                                            stderr=subprocess.PIPE,
+                    result = subprocess.run([self.programs[2].program, *arguments],
+                                            stdout=full, stderr=subprocess.PIPE,
                                             universal_newlines=True)
                 result.stdout = ''
                 self.verdict('b: standard output that is full, ' + arguments[0],
@@ -210,7 +210,9 @@ def main():
     # Each program is on one process, and need not start a daemon for others; without
     # one, programs of other tests would have the same directory for their files.
     os.environ['OMPI_MCA_ess_singleton_isolated'] = '1'
-    runner = Runner({2: os.path.abspath(sys.argv[1]), 3: os.path.abspath(sys.argv[2])})
+    programs = {dimension: StartedProgram(os.path.abspath(program), *sys.argv[3:])
+                for dimension, program in zip((2, 3), sys.argv[1:])}
+    runner = Runner(programs)
     work = tempfile.mkdtemp()
     os.environ['TMPDIR'] = work
     try:
@@ -225,6 +227,8 @@ def main():
         runner.check_check()
         runner.check_streams()
     finally:
+        for program in programs.values():
+            program.close()
         os.chdir('/')
         shutil.rmtree(work)
     print('%d failed' % runner.failures)

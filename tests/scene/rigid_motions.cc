@@ -15,13 +15,12 @@
 // some
 //   column is held otherwise, and hand that on to all columns that they share.
 
+#include <common/dense_algebra.h>
 #include <common/input_error.h>
 #include <common/scene/rigid_motions.h>
 
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_tools.h>
-
-#include <Eigen/QR>
 
 #include <random>
 
@@ -87,8 +86,7 @@ namespace
         Eigen::MatrixXd columns(contact.rows(), nodes.size());
         for (unsigned int i = 0; i < nodes.size(); ++i)
           columns.col(i) = contact.col(nodes[i]);
-        const Eigen::VectorXd pressures =
-          columns.colPivHouseholderQr().solve(loads);
+        const Eigen::VectorXd pressures = least_squares(columns, loads);
         if (pressures.minCoeff() >= -1e-9 &&
             (columns * pressures - loads).norm() < 1e-9 * loads.norm())
           return true;

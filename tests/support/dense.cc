@@ -39,6 +39,14 @@ namespace Tests
 
 
   Eigen::MatrixXd
+  solve_singular(const Eigen::MatrixXd &A, const Eigen::MatrixXd &B)
+  {
+    return A.fullPivLu().solve(B);
+  }
+
+
+
+  Eigen::MatrixXd
   least_squares(const Eigen::MatrixXd &A, const Eigen::MatrixXd &B)
   {
     return A.completeOrthogonalDecomposition().solve(B);

@@ -19,6 +19,10 @@ namespace Tests
   /// $A^{-1}B$.
   Eigen::MatrixXd solve(const Eigen::MatrixXd &A, const Eigen::MatrixXd &B);
 
+  /// One of many, with zeros for the others, if A is singular.
+  Eigen::MatrixXd solve_singular(const Eigen::MatrixXd &A,
+                                 const Eigen::MatrixXd &B);
+
   /// The X that makes $AX-B$ smallest.
   Eigen::MatrixXd least_squares(const Eigen::MatrixXd &A,
                                 const Eigen::MatrixXd &B);

@@ -1,0 +1,49 @@
+"""A program that is run many times, and need not be loaded each time, see
+fork_server.cc."""
+import os
+import select
+import subprocess
+import tempfile
+
+
+class StartedProgram:
+    """Runs PROGRAM. SERVER is the library fork_server, or empty: then it is started anew
+    each time. Runs have the environment of the first one, and one is at an end before the
+    next begins."""
+
+    def __init__(self, program, server=''):
+        self.program, self.server = program, server
+        self.process = None
+
+    def run(self, arguments, timeout=120):
+        """As subprocess.run() with texts of standard output and standard error."""
+        with tempfile.NamedTemporaryFile() as out, tempfile.NamedTemporaryFile() as err:
+            words = [self.program, *arguments]
+            if self.server:
+                status = self.ask([os.getcwd(), out.name, err.name, *words], timeout)
+            else:
+                status = subprocess.run(words, stdin=subprocess.DEVNULL, stdout=out,
+                                        stderr=err, timeout=timeout).returncode
+            texts = [file.read().decode() for file in map(open_bytes, (out, err))]
+        return subprocess.CompletedProcess(words, status, *texts)
+
+    def ask(self, words, timeout):
+        if self.process is None:
+            self.process = subprocess.Popen(
+                [self.program], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                env=dict(os.environ, LD_PRELOAD=self.server))
+        request = [str(len(words)), *words]
+        self.process.stdin.write(b''.join(os.fsencode(w) + b'\0' for w in request))
+        self.process.stdin.flush()
+        if not select.select([self.process.stdout], [], [], timeout)[0]:
+            self.process.kill()
+            raise subprocess.TimeoutExpired(words, timeout)
+        return int(self.process.stdout.readline())
+
+    def close(self):
+        if self.process:
+            self.process.communicate()
+
+
+def open_bytes(file):
+    return open(file.name, 'rb')
