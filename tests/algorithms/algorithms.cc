@@ -18,10 +18,11 @@
 
 #include "../support/random_problem.h"
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_algorithms
 {
   double
   largest_difference(const VectorType &a, const VectorType &b)
@@ -361,12 +362,10 @@ namespace
               friction->state().size() * (sizeof(double) + sizeof(char)),
           "with friction something is allocated");
   }
-} // namespace
+} // namespace test_algorithms
 
-int
-main(int argc, char **argv)
+TEST(algorithms)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   compare_algorithms();
   compare_in_3d();
   compare_guesses();

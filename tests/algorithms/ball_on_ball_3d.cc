@@ -13,15 +13,16 @@
 
 #include <tests/support/check.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-int
-main(int argc, char **argv)
+TEST(ball_on_ball_3d)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   // Another mesh than that of the test, for more digits.
-  const std::string  size = argc > 1 ? argv[1] : "Refinement/Maximum dofs=5000";
+  const std::string  size = Tests::arguments().empty()
+     ? "Refinement/Maximum dofs=5000"
+     : Tests::arguments()[0];
   NestedIteration<3> nest(without_safeguards(
     read_parameters(SCENES_3D_DIR "/ball-on-ball.prm", {size})));
   const double       R = 2. / 3, E = 1 / (1 - .3 * .3), start = .01;
@@ -64,7 +65,7 @@ main(int argc, char **argv)
     most          = std::max(most, (s - d) / P);
     largest_way   = std::max(largest_way, s);
     largest_force = std::max(largest_force, P);
-    if (argc > 1)
+    if (!Tests::arguments().empty())
       std::cout << "P " << P << ", a " << a << ", measured " << radius << ", p "
                 << p << ", s " << s << ", d " << d << ", (s-d)/P "
                 << (s - d) / P << std::endl;
@@ -84,13 +85,14 @@ main(int argc, char **argv)
   check_below(std::abs(largest_force / .0021978 - 1),
               1e-5,
               "the obstacle exerts the force of the platen");
-  check_below(
-    pressure_error, argc > 1 ? .005 : .04, "the largest pressure is Hertz's");
+  check_below(pressure_error,
+              !Tests::arguments().empty() ? .005 : .04,
+              "the largest pressure is Hertz's");
   check_below(radius_error,
               1.,
               "the radius of the zone of contact is Hertz's, to a node");
   check_below((most - least) * largest_force / largest_way,
-              argc > 1 ? .012 : .05,
+              !Tests::arguments().empty() ? .012 : .05,
               "the platen's way is Hertz's approach and a part in proportion");
   check_below(most_cycles, 20, "few cycles for each force");
 }

@@ -12,10 +12,11 @@
 
 #include <tests/reference/solutions/scenes.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_block
 {
   std::string
   override(const std::string &entry, const double value)
@@ -176,12 +177,10 @@ namespace
             "tresca",
             {override("Contact/Friction bound", bound)});
   }
-} // namespace
+} // namespace test_block
 
-int
-main(int argc, char **argv)
+TEST(block)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   for (const unsigned int refinements : {3, 4})
     {
       for (const double F : {0., 0.05, 0.4, 1.})

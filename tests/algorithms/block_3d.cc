@@ -12,10 +12,11 @@
 
 #include <tests/reference/solutions/scenes_3d.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_block_3d
 {
   struct Variant
   {
@@ -235,13 +236,10 @@ namespace
     {"contact", TruncationVariant::contact},
     {"phases without second order",
      TruncationVariant::phases_without_second_order}};
-} // namespace
+} // namespace test_block_3d
 
-int
-main(int argc, char **argv)
+TEST(block_3d)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-
   // Algorithms, coarse corrections and local solvers.
   const auto compare = [](const unsigned int refinements,
                           const Coefficient &F,

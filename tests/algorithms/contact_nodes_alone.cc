@@ -16,10 +16,11 @@
 #include <tests/support/check.h>
 #include <tests/support/discretized.h>
 #include <tests/support/random_problem.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_contact_nodes_alone
 {
   template <int dim>
   void
@@ -201,15 +202,13 @@ namespace
                      name + (is_hard ? " is" : " is not") +
                        " solved on contact nodes alone");
   }
-} // namespace
+} // namespace test_contact_nodes_alone
 
 
 
-int
-main(int argc, char **argv)
+TEST(contact_nodes_alone)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  Random                           random(1);
+  Random random(1);
   test<2>(random);
   test<3>(random);
   const std::string to_and_fro = "(2 - t)*0.02, ";

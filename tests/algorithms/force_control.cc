@@ -16,10 +16,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_force_control
 {
   std::string
   scene_file(const unsigned int dim, const std::string &name)
@@ -332,13 +333,11 @@ namespace
                        next.platens().checkpoint_numbers(),
                      "and has learnt the same");
   }
-} // namespace
+} // namespace test_force_control
 
-int
-main(int argc, char **argv)
+TEST(force_control)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  const std::string                sticks =
+  const std::string sticks =
     "Scene/Constants=L = 2; H = 1; U = 0.01; d = 0.02; gap = 0";
   const std::string both = "Boundary conditions/Force=3: q*L, -p*L";
   patch_test<2>("pressed by a force, all sticks",

@@ -10,10 +10,11 @@
 
 #include <tests/reference/solutions/half_plane_contact.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_hertz
 {
   struct Counts
   {
@@ -125,13 +126,10 @@ namespace
                 << theory.peak_pressure << ", stick ratio " << stick_ratio
                 << " instead of " << theory.stick_ratio << std::endl;
   }
-} // namespace
+} // namespace test_hertz
 
-int
-main(int argc, char **argv)
+TEST(hertz)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-
   // The published sequence begins where the mesh resolves the contact zone;
   // from there on each level halves the size of the cells in it.
   const std::vector<Counts> published = {

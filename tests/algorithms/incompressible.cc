@@ -15,10 +15,11 @@
 #include <tests/support/check.h>
 
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_incompressible
 {
   struct Errors
   {
@@ -145,13 +146,11 @@ namespace
               "  estimated error above the true one, less than ten times");
       }
   }
-} // namespace
+} // namespace test_incompressible
 
-int
-main(int argc, char **argv)
+TEST(incompressible)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  const std::string                mean = "Material/Volumetric strain=mean",
+  const std::string mean      = "Material/Volumetric strain=mean",
                     pointwise = "Material/Volumetric strain=pointwise",
                     nu        = "Material/Poisson ratio=";
 

@@ -12,10 +12,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_jumps
 {
   template <int dim>
   std::vector<std::string>
@@ -87,14 +88,12 @@ namespace
                     "  with the same energy");
       }
   }
-} // namespace
+} // namespace test_jumps
 
 
 
-int
-main(int argc, char **argv)
+TEST(jumps)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const bool alone = Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
   test<2>("abs(y - 0.33) < 0.06", alone ? 20 : 40, alone);
   test<2>("(x - 0.55)^2 + (y - 0.3)^2 < 0.04", alone ? 20 : 40);

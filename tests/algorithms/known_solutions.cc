@@ -15,10 +15,11 @@
 
 #include <tests/reference/solutions/scenes.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_known_solutions
 {
   std::string
   number(const double value)
@@ -290,12 +291,10 @@ namespace
         last_pressure_error = pressure_error;
     } while (iteration.advance());
   }
-} // namespace
+} // namespace test_known_solutions
 
-int
-main(int argc, char **argv)
+TEST(known_solutions)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   raous();
 
   std::cout << "stick-slip" << std::endl;

@@ -13,10 +13,11 @@
 
 #include <tests/reference/solutions/scenes_3d.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_known_solutions_3d
 {
   constexpr double F = .4, nu = .3;
 
@@ -199,13 +200,10 @@ namespace
                 << contact.size() << ", slipping " << n_slipping
                 << ", hanging there " << n_hanging << std::endl;
   }
-} // namespace
+} // namespace test_known_solutions_3d
 
-int
-main(int argc, char **argv)
+TEST(known_solutions_3d)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-
   // Along the edges, askew, and so nearly along an edge that one component is
   // all but rounding.
   std::cout << "Direction of shear" << std::endl;

@@ -20,10 +20,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_load_steps
 {
   // The threshold of the shear is .028. At t = 0 the block is pressed, at 1 it
   // sticks, at 2 it has slid to .012, at 3 and 3.5 (where nothing changes) it
@@ -227,12 +228,10 @@ namespace
                        !with_time->begin_next_load_step(),
                      "a single time: the scene at this time, to the last bit");
   }
-} // namespace
+} // namespace test_load_steps
 
-int
-main(int argc, char **argv)
+TEST(load_steps)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   solve_history();
   unload();
   solve_one_time();

@@ -13,10 +13,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_mindlin
 {
   struct Step
   {
@@ -64,14 +65,14 @@ namespace
       *nest.guess()[i] = kept[i];
     return report.cycles.size();
   }
-} // namespace
+} // namespace test_mindlin
 
-int
-main(int argc, char **argv)
+TEST(mindlin)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   // Another mesh than that of the test, for more digits.
-  const std::string  size = argc > 1 ? argv[1] : "Refinement/Maximum dofs=5000";
+  const std::string  size = Tests::arguments().empty()
+     ? "Refinement/Maximum dofs=5000"
+     : Tests::arguments()[0];
   NestedIteration<2> nest(
     without_safeguards(read_parameters(SCENES_DIR "/mindlin.prm", {size})));
   nest.begin();
@@ -87,7 +88,7 @@ main(int argc, char **argv)
       const unsigned int cold = cycles_from_nothing(nest);
       n_converged += nest.solve().converged;
       const unsigned int warm = nest.report().cycles.size();
-      if (argc > 1)
+      if (!Tests::arguments().empty())
         std::cout << "t = " << nest.scene().time() << ": " << warm
                   << " cycles, from nothing " << cold << std::endl;
       n_warm += warm;
@@ -121,7 +122,7 @@ main(int argc, char **argv)
     }
   check(smallest < .5, "the zone of stick shrinks to less than a half");
   check_below(error,
-              argc > 1 ? .008 : .03,
+              !Tests::arguments().empty() ? .008 : .03,
               "c/a is that of Cattaneo and Mindlin, to a node");
   check_below(masing, 1e-3, "Masing's rule holds to a thousandth");
   check_below(std::abs(steps[12].Q / steps[4].Q - 1),
@@ -129,7 +130,7 @@ main(int argc, char **argv)
               "the loop is closed to a ten-thousandth");
   check(worse == 0 && n_warm < .8 * n_cold,
         "all steps take fewer cycles than from nothing");
-  if (argc > 1)
+  if (!Tests::arguments().empty())
     std::cout << error << ' ' << masing << ' ' << n_warm << ' ' << n_cold
               << std::endl;
 }

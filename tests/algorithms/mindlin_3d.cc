@@ -15,10 +15,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_mindlin_3d
 {
   struct Step
   {
@@ -47,14 +48,14 @@ namespace
     step.c = std::sqrt(stick_area / numbers::PI);
     return step;
   }
-} // namespace
+} // namespace test_mindlin_3d
 
-int
-main(int argc, char **argv)
+TEST(mindlin_3d)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   // Another mesh than that of the test, for more digits.
-  const std::string  size = argc > 1 ? argv[1] : "Refinement/Maximum dofs=5000";
+  const std::string  size = Tests::arguments().empty()
+     ? "Refinement/Maximum dofs=5000"
+     : Tests::arguments()[0];
   NestedIteration<3> nest(
     without_safeguards(read_parameters(SCENES_3D_DIR "/mindlin.prm", {size})));
   nest.begin();
@@ -79,7 +80,7 @@ main(int argc, char **argv)
       const double from = i <= 2 ? 0. : steps[2].force[0];
       const double c    = std::cbrt(
         1 - std::abs(steps[i].force[0] - from) / ((i <= 2 ? 1 : 2) * F * P));
-      if (argc > 1)
+      if (!Tests::arguments().empty())
         std::cout << "t = " << i << ": c/a " << steps[i].c / steps[i].a
                   << ", closed form " << c << std::endl;
       error = std::max(

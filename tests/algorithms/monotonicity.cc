@@ -20,10 +20,11 @@
 
 #include "../support/random_problem.h"
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_monotonicity
 {
   // Energies are compared up to the rounding of their evaluation, a sum over
   // all nodes.
@@ -822,12 +823,10 @@ namespace
     std::cout << "recombination" << std::endl;
     recombination<dim>(fixture);
   }
-} // namespace
+} // namespace test_monotonicity
 
-int
-main(int argc, char **argv)
+TEST(monotonicity)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   for (const std::string name : {"hertz", "block"})
     {
       TrescaProblem<2> fixture(

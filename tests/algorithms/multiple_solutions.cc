@@ -21,12 +21,13 @@
 
 #include <tests/support/check.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 #include "../support/random_problem.h"
 
 using namespace Tests;
 
-namespace
+namespace test_multiple_solutions
 {
   constexpr double F = 4, f = -3, q = 1;
 
@@ -101,15 +102,12 @@ namespace
       return "none";
     }
   };
-} // namespace
+} // namespace test_multiple_solutions
 
 
 
-int
-main(int argc, char *argv[])
+TEST(multiple_solutions)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-
   const Parameters p = parameters();
   const Scene<2>   scene(p);
   std::cout << scene.warning(scene.contact_conditions()[0].friction_coefficient)

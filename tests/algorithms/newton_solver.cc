@@ -12,6 +12,7 @@
 #include <common/input_error.h>
 
 #include <tests/support/check.h>
+#include <tests/support/test.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,7 @@ using namespace dealii;
 using namespace Friction;
 using Tests::check_everywhere;
 
-namespace
+namespace test_newton_solver
 {
   using Entries = std::vector<std::string>;
 
@@ -155,43 +156,32 @@ namespace
     check_everywhere(outcome.iterations_per_step <= 6,
                      "in steps of six iterations at most");
   }
-} // namespace
+} // namespace test_newton_solver
 
 
 
-int
-main(int argc, char *argv[])
+TEST(newton_solver)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
     std::cout.setstate(std::ios::failbit);
-  try
-    {
-      const Entries adaptive   = {"Refinement/Strategy=adaptive",
-                                  "Refinement/Levels=4"};
-      const Entries adaptive_3 = {"Refinement/Strategy=adaptive",
-                                  "Refinement/Levels=1"};
-      const auto    with       = [](Entries entries, const std::string &entry) {
-        entries.push_back(entry);
-        return entries;
-      };
-      test_agreement<2>(
-        "no friction", "block", with(adaptive, "Contact/Friction law=none"));
-      test_agreement<2>("Tresca", "tresca", {"Refinement/Levels=2"});
-      test_agreement<2>("Coulomb", "block", adaptive);
-      test_agreement<2>("load steps",
-                        "mindlin",
-                        {"Refinement/Levels=2", "Load steps/Times=0, 1, 2, 4"});
-      test_agreement<3>("no friction, 3D",
-                        "block",
-                        with(adaptive_3, "Contact/Friction law=none"));
-      test_agreement<3>("Coulomb, 3D", "block", adaptive_3);
-      test_agreement<3>("rods", "cylinder", {"Refinement/Levels=1"});
-      test_much_friction();
-    }
-  catch (const InputError &error)
-    {
-      std::cerr << error.what() << std::endl;
-      return 1;
-    }
+  const Entries adaptive   = {"Refinement/Strategy=adaptive",
+                              "Refinement/Levels=4"};
+  const Entries adaptive_3 = {"Refinement/Strategy=adaptive",
+                              "Refinement/Levels=1"};
+  const auto    with       = [](Entries entries, const std::string &entry) {
+    entries.push_back(entry);
+    return entries;
+  };
+  test_agreement<2>(
+    "no friction", "block", with(adaptive, "Contact/Friction law=none"));
+  test_agreement<2>("Tresca", "tresca", {"Refinement/Levels=2"});
+  test_agreement<2>("Coulomb", "block", adaptive);
+  test_agreement<2>("load steps",
+                    "mindlin",
+                    {"Refinement/Levels=2", "Load steps/Times=0, 1, 2, 4"});
+  test_agreement<3>(
+    "no friction, 3D", "block", with(adaptive_3, "Contact/Friction law=none"));
+  test_agreement<3>("Coulomb, 3D", "block", adaptive_3);
+  test_agreement<3>("rods", "cylinder", {"Refinement/Levels=1"});
+  test_much_friction();
 }

@@ -21,10 +21,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_own_models
 {
   using Entries = std::vector<std::string>;
 
@@ -371,12 +372,10 @@ namespace
     check_below(std::abs(amplitude / wave - 1), .03, "Westergaard's pressure");
     check_below(deviation / wave, .02, "which is a wave");
   }
-} // namespace
+} // namespace test_own_models
 
-int
-main(int argc, char **argv)
+TEST(own_models)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   on_a_slope();
   ring_on_disc();
   pressed_onto_a_ball();

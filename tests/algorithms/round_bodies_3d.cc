@@ -14,10 +14,11 @@
 
 #include <tests/reference/solutions/dense_contact_3d.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_round_bodies_3d
 {
   constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -363,13 +364,10 @@ namespace
     check_below(largest_imbalance, 1e-8, "what acts on the body is in balance");
     check_below(n_cycles, 15, "cycles on each level from the second on");
   }
-} // namespace
+} // namespace test_round_bodies_3d
 
-int
-main(int argc, char **argv)
+TEST(round_bodies_3d)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-
   for (const Body &body : bodies())
     for (const double F : {0., .1, .4})
       compare(body, body.scene == "half-ball" ? .3 : .325, F);

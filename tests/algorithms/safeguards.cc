@@ -15,10 +15,11 @@
 
 #include "../support/random_problem.h"
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_safeguards
 {
   void
   test_stalling()
@@ -210,14 +211,12 @@ namespace
       std::cout << attempt.name << std::endl;
     check_below(report.certificate.largest(), 1e-8, "almost it is");
   }
-} // namespace
+} // namespace test_safeguards
 
 
 
-int
-main(int argc, char *argv[])
+TEST(safeguards)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) > 0)
     std::cout.setstate(std::ios::failbit);
   test_stalling();

@@ -12,6 +12,7 @@
 #include <common/input_error.h>
 
 #include <tests/support/check.h>
+#include <tests/support/test.h>
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +25,7 @@ using namespace dealii;
 using namespace Friction;
 using Tests::check_everywhere;
 
-namespace
+namespace test_several_contacts
 {
   using Entries = std::vector<std::string>;
 
@@ -243,12 +244,10 @@ namespace
     const bool good = message.find(words) != message.npos;
     check_everywhere(good, what + (good ? "" : ": " + message));
   }
-} // namespace
+} // namespace test_several_contacts
 
-int
-main(int argc, char **argv)
+TEST(several_contacts)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_clamped<2>();
   test_clamped<3>();
   test_renamed();
@@ -267,5 +266,4 @@ main(int argc, char **argv)
   test_refused("a boundary that is not there",
                wall + Entries{"Contact 2/Boundary id=7"},
                "'Contact 2/Boundary id' names boundary id 7");
-  return 0;
 }

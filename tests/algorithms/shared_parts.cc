@@ -15,6 +15,7 @@
 
 #include <tests/support/check.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 namespace
 {
@@ -79,7 +80,7 @@ operator delete(void *memory, std::size_t) noexcept
 
 using namespace Tests;
 
-namespace
+namespace test_shared_parts
 {
   // Much friction, for which Algorithm 3 goes to and fro.
   void
@@ -110,14 +111,12 @@ namespace
                 .1,
                 "what attempts allocate is little beside the construction");
   }
-} // namespace
+} // namespace test_shared_parts
 
 
 
-int
-main(int argc, char *argv[])
+TEST(shared_parts)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test("The parts of the default", {});
   test("Others, which the safeguards exchange",
        {"Solver/Truncation=contact", "Solver/Coarse correction=monotone"});

@@ -27,10 +27,11 @@
 
 #include <tests/reference/solutions/dense_contact.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_slip_origin
 {
   std::string
   number(const double value)
@@ -408,12 +409,10 @@ namespace
                 << displacement_error << ' ' << force_error << ' '
                 << different_states << std::endl;
   }
-} // namespace
+} // namespace test_slip_origin
 
-int
-main(int argc, char **argv)
+TEST(slip_origin)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   patch_history<2>(SCENES_DIR "/stick-slip.prm", 0., false);
   patch_history<2>(SCENES_DIR "/stick-slip.prm", 25., false);
   patch_history<3>(SCENES_3D_DIR "/stick-slip.prm", 25., false);

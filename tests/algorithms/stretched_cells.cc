@@ -9,10 +9,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_stretched_cells
 {
   template <int dim>
   void
@@ -44,14 +45,12 @@ namespace
         std::to_string(bound) + " cycles" +
         (most_cycles > bound ? ", no, " + std::to_string(most_cycles) : ""));
   }
-} // namespace
+} // namespace test_stretched_cells
 
 
 
-int
-main(int argc, char **argv)
+TEST(stretched_cells)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const bool alone = Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
   test<2>("10, 1", 1, 3, alone ? 9 : 24);
   test<2>("1, 10", 1, 3, alone ? 10 : 24);

@@ -21,10 +21,11 @@
 #include <tests/support/check.h>
 #include <tests/support/cut_quadrilaterals.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_thesis_hertz
 {
   // A core of 8 x 1 cells and a ring around its left, lower and right sides.
   // Near the lowest point the arc has a vertex every 15 degrees, so that the
@@ -74,13 +75,11 @@ namespace
           }
     mesh.set_manifold(0, SphericalManifold<2>());
   }
-} // namespace
+} // namespace test_thesis_hertz
 
-int
-main(int argc, char **argv)
+TEST(thesis_hertz)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  const Parameters                 parameters = without_safeguards(
+  const Parameters parameters = without_safeguards(
     read_parameters(SCENES_DIR "/hertz.prm", {"Refinement/Maximum dofs=3000"}));
   NestedIteration<2> nest(parameters, cut_quadrilaterals(parameters.material));
   make_mesh(nest.mesh());

@@ -16,14 +16,12 @@
 #include <tests/support/check.h>
 
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-int
-main(int argc, char **argv)
+TEST(truncation_variants)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-
   const unsigned int limit = 100;
   NestedIteration<3> iteration(
     read_parameters(SCENES_3D_DIR "/block.prm",

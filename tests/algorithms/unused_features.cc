@@ -21,6 +21,7 @@
 
 #include <tests/support/check.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
@@ -50,7 +51,7 @@ operator delete(void *memory, std::size_t) noexcept
   std::free(memory);
 }
 
-namespace
+namespace test_unused_features
 {
   using Entries = std::vector<std::string>;
 
@@ -196,14 +197,12 @@ namespace
     check_everywhere(reductions > 0 && reductions / cycles < 10.95,
                      "reductions in a cycle");
   }
-} // namespace
+} // namespace test_unused_features
 
 
 
-int
-main(int argc, char **argv)
+TEST(unused_features)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   same_words<2>();
   if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1)
     same_words<3>();

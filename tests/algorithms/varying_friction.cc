@@ -11,10 +11,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_varying_friction
 {
   // Copies of a mesh side by side as one mesh, boundary ids included.
   template <int dim>
@@ -166,12 +167,10 @@ namespace
     check(difference.linfty_norm() == 0.,
           number + " as an expression: the same displacement");
   }
-} // namespace
+} // namespace test_varying_friction
 
-int
-main(int argc, char **argv)
+TEST(varying_friction)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   three_blocks<2>(SCENES_DIR "/stick-slip.prm", 0.);
   three_blocks<2>(SCENES_DIR "/stick-slip.prm", 25.);
   three_blocks<3>(SCENES_3D_DIR "/stick-slip.prm", 25.);

@@ -17,10 +17,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/random_problem.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_wrong_solutions
 {
   // The certificate of the accepted solution with changes.
   template <int dim>
@@ -174,12 +175,10 @@ namespace
     test_old_bounds(nest, tolerance);
   }
 
-} // namespace
+} // namespace test_wrong_solutions
 
-int
-main(int argc, char *argv[])
+TEST(wrong_solutions)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   refuse<2>(read_parameters(SCENES_DIR "/hertz.prm"), 5);
   refuse<3>(read_parameters(SCENES_3D_DIR "/block.prm",
                             {"Refinement/Initial refinements=2"}),

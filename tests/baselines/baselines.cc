@@ -11,10 +11,11 @@
 #include <sstream>
 
 #include <tests/support/check.h>
+#include <tests/support/test.h>
 
 using namespace Benchmark;
 
-namespace
+namespace test_baselines
 {
   template <int dim>
   void
@@ -111,12 +112,10 @@ namespace
         check(first > 1e-4 && last < 1e-7, name + ": the error falls");
       }
   }
-} // namespace
+} // namespace test_baselines
 
-int
-main(int argc, char **argv)
+TEST(baselines)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   compare<2>(SCENES_DIR "/hertz.prm", {"Refinement/Maximum dofs=1500"}, true);
   compare<2>(SCENES_DIR "/block.prm",
              {"Contact/Friction coefficient=0.05",

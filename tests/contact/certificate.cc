@@ -20,10 +20,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/random_problem.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_certificate
 {
   constexpr double friction = .4;
 
@@ -378,12 +379,10 @@ namespace
             !with.sticks(8) && with.normal_force(7) == 1.,
           "sticking nodes are counted in contact only");
   }
-} // namespace
+} // namespace test_certificate
 
-int
-main(int argc, char **argv)
+TEST(certificate)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test<2>();
   test<3>();
   test_state();

@@ -10,6 +10,7 @@
 #include <common/parameters/parameters.h>
 
 #include <tests/support/check.h>
+#include <tests/support/test.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -22,7 +23,7 @@ using namespace dealii;
 using namespace Friction;
 using Tests::check_everywhere;
 
-namespace
+namespace test_force_balance
 {
   constexpr double rounding = 1e-8;
 
@@ -194,16 +195,13 @@ namespace
     check_everywhere(contact.normal > 0 && contact.total[dim - 1] > 0,
                      "the obstacle pushes");
   }
-} // namespace
+} // namespace test_force_balance
 
-int
-main(int argc, char **argv)
+TEST(force_balance)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   patch_test();
   weight<2>();
   weight<3>();
   pressed<2>("hertz");
   pressed<3>("half-ball");
-  return 0;
 }

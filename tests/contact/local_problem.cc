@@ -26,12 +26,13 @@
 
 #include <tests/support/check.h>
 #include <tests/support/random.h>
+#include <tests/support/test.h>
 
 using namespace dealii;
 using namespace Friction;
 using namespace Tests;
 
-namespace
+namespace test_local_problem
 {
   constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -252,10 +253,9 @@ namespace
     const auto smooth = problem.solve({{1., 0.}}, 0., {{0.}});
     check(smooth.in_contact && !smooth.sticks, "without friction none sticks");
   }
-} // namespace
+} // namespace test_local_problem
 
-int
-main()
+TEST(local_problem)
 {
   test_random();
   test_biactive();

@@ -34,12 +34,13 @@
 
 #include <tests/support/check.h>
 #include <tests/support/random.h>
+#include <tests/support/test.h>
 
 using namespace dealii;
 using namespace Friction;
 using namespace Tests;
 
-namespace
+namespace test_local_problem_3d
 {
   using Vector2 = std::array<double, 2>;
   using Vector3 = std::array<double, 3>;
@@ -814,10 +815,9 @@ namespace
     check_below(worst, 1e-14, "the secular equation");
     check_below(worst_uzawa, 1e-11, "Uzawa's method");
   }
-} // namespace
+} // namespace test_local_problem_3d
 
-int
-main()
+TEST(local_problem_3d)
 {
   test_inclusion();
   test_truth();

@@ -19,10 +19,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/random_problem.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_semismooth_law
 {
   constexpr double friction = .4;
 
@@ -240,14 +241,12 @@ namespace
       1e-12,
       "a zone is softer than a node");
   }
-} // namespace
+} // namespace test_semismooth_law
 
 
 
-int
-main(int argc, char *argv[])
+TEST(semismooth_law)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test<2>();
   test<3>();
 }

@@ -19,10 +19,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/random_problem.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_contact_boundary
 {
   Parameters
   half_disc()
@@ -278,12 +279,10 @@ namespace
                   << std::endl;
       }
   }
-} // namespace
+} // namespace test_contact_boundary
 
-int
-main(int argc, char **argv)
+TEST(contact_boundary)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_half_disc();
   test_rod();
   test_measures<2>(3, .5);

@@ -29,12 +29,13 @@
 #include <random>
 
 #include <tests/support/check.h>
+#include <tests/support/test.h>
 
 using namespace dealii;
 using namespace Friction;
 using namespace Tests;
 
-namespace
+namespace test_leaf_matrix
 {
   // The same numbers for the same cell, whichever process owns it.
   template <typename Cell>
@@ -207,12 +208,10 @@ namespace
     check_everywhere(diagonal <= 1e-14 * largest, "diagonal blocks");
     check_everywhere(same_blocks, "the same blocks");
   }
-} // namespace
+} // namespace test_leaf_matrix
 
-int
-main(int argc, char **argv)
+TEST(leaf_matrix)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test<2>(MPI_COMM_WORLD);
   test<3>(MPI_COMM_WORLD);
 }

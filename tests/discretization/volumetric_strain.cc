@@ -12,12 +12,13 @@
 
 #include <tests/support/check.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 #include "../support/random_problem.h"
 
 using namespace Tests;
 
-namespace
+namespace test_volumetric_strain
 {
   struct Quadrilateral
   {
@@ -61,13 +62,10 @@ namespace
        "Material/Poisson ratio=" + poisson_ratio,
        "Material/Volumetric strain=" + strain});
   }
-} // namespace
+} // namespace test_volumetric_strain
 
-int
-main(int argc, char **argv)
+TEST(volumetric_strain)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-
   // Two bodies with shear modulus one on one distorted mesh, which differ by
   // the term with lambda.
   const Scene<2> scene(parameters("0.4999", "mean"));

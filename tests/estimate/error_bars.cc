@@ -10,11 +10,12 @@
 #include <utility>
 
 #include <tests/support/check.h>
+#include <tests/support/test.h>
 
 using namespace Friction;
 using namespace Tests;
 
-namespace
+namespace test_error_bars
 {
   constexpr double safety = 1.5;
 
@@ -61,10 +62,9 @@ namespace
       }
     check(good, "width");
   }
-} // namespace
+} // namespace test_error_bars
 
-int
-main()
+TEST(error_bars)
 {
   for (const unsigned int dim : {2, 3})
     for (const double order : {1., 2.})

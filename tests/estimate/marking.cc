@@ -10,13 +10,12 @@
 #include <iostream>
 #include <vector>
 
+#include <tests/support/test.h>
+
 using namespace dealii;
 
-int
-main(int argc, char **argv)
+TEST(marking)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-
   parallel::distributed::Triangulation<2> triangulation(MPI_COMM_WORLD);
   GridGenerator::hyper_cube(triangulation);
   triangulation.refine_global(3);

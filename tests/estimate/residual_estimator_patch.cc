@@ -18,11 +18,12 @@
 #include <iostream>
 
 #include <tests/support/material_of.h>
+#include <tests/support/test.h>
 
 using namespace dealii;
 using namespace Friction;
 
-namespace
+namespace test_residual_estimator_patch
 {
   constexpr double lambda      = 0.75;
   constexpr double mu          = 0.5;
@@ -201,12 +202,10 @@ namespace
     contact.traction = nullptr;
     print("no contact stress");
   }
-} // namespace
+} // namespace test_residual_estimator_patch
 
-int
-main(int argc, char **argv)
+TEST(residual_estimator_patch)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test<2>();
   test<3>();
 }

@@ -15,10 +15,11 @@
 #include <tests/support/check.h>
 
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_discretization_stop
 {
   template <int dim>
   double
@@ -181,14 +182,12 @@ namespace
     check(least_overestimation > least, "the estimate is far too large");
     check_below(most_tolerated, .1, "what is tolerated over the true error");
   }
-} // namespace
+} // namespace test_discretization_stop
 
 
 
-int
-main(int argc, char *argv[])
+TEST(discretization_stop)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test<2>("hertz", {"Refinement/Maximum dofs=5000"});
   test<2>("block",
           {"Refinement/Initial refinements=2",

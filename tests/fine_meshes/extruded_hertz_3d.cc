@@ -11,10 +11,11 @@
 #include <tests/support/check.h>
 
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_extruded_hertz_3d
 {
   // Push harder than the scenes do: the meshes here are uniform and coarse, and
   // the contact zone shall have some nodes that stick and some that slip.
@@ -170,13 +171,11 @@ namespace
     check_below(force_error, 1e-9, "nodal forces");
     check_below(energy_error, 1e-9, "energy");
   }
-} // namespace
+} // namespace test_extruded_hertz_3d
 
-int
-main(int argc, char **argv)
+TEST(extruded_hertz_3d)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  const auto                       secular = LocalSolver::secular_equation;
+  const auto secular = LocalSolver::secular_equation;
   for (const unsigned int refinements : {1, 2})
     {
       compare(refinements, 0., secular, "F = 0");

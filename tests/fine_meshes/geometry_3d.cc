@@ -24,10 +24,12 @@
 #include <set>
 #include <tuple>
 
+#include <tests/support/test.h>
+
 using namespace dealii;
 using namespace Friction;
 
-namespace
+namespace test_geometry_3d
 {
   Parameters
   parameters(const std::vector<std::string> &overrides, const int dim = 3)
@@ -271,12 +273,10 @@ namespace
         std::cout << error.what() << std::endl;
       }
   }
-} // namespace
+} // namespace test_geometry_3d
 
-int
-main(int argc, char **argv)
+TEST(geometry_3d)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   std::cout.precision(4);
 
   const double pi        = numbers::PI;

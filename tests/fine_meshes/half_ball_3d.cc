@@ -25,10 +25,11 @@
 #include <tests/support/check.h>
 
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_half_ball_3d
 {
   constexpr double R = 1, E = 1, nu = .3;
   const double     Es = E / (1 - nu * nu);
@@ -203,13 +204,10 @@ namespace
                 "peak pressure");
     check_below(m.pressure_error, .12, "pressure in L2");
   }
-} // namespace
+} // namespace test_half_ball_3d
 
-int
-main(int argc, char **argv)
+TEST(half_ball_3d)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-
   // The energy is that of a minimum, so its error is the square of an error of
   // order one; the force is its derivative by d.
   std::cout << "Three meshes, a/R = 0.2" << std::endl;

@@ -15,10 +15,11 @@
 #include <tests/support/check.h>
 
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_large_coarse_mesh
 {
   void
   write_mesh(const Triangulation<2> &mesh, const std::string &file_name)
@@ -44,16 +45,14 @@ namespace
     check_below(report.certificate.largest(), 1e-6, "certificate");
     check_below(report.cycles.size(), 20, "cycles");
   }
-} // namespace
+} // namespace test_large_coarse_mesh
 
 
 
-int
-main(int argc, char **argv)
+TEST(large_coarse_mesh)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  const std::vector<std::string>   overrides = {"Refinement/Levels=0",
-                                                "Material/Poisson ratio=0.45"};
+  const std::vector<std::string> overrides = {"Refinement/Levels=0",
+                                              "Material/Poisson ratio=0.45"};
 
   const auto parameters = [&](std::vector<std::string> more) {
     more.insert(more.end(), overrides.begin(), overrides.end());

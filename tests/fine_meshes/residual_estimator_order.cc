@@ -30,11 +30,12 @@
 #include <iostream>
 
 #include <tests/support/material_of.h>
+#include <tests/support/test.h>
 
 using namespace dealii;
 using namespace Friction;
 
-namespace
+namespace test_residual_estimator_order
 {
   // Component c is the plane wave $\sin(k_c\cdot x)$.
   template <int dim>
@@ -438,12 +439,10 @@ namespace
                                                                       : "no")
               << std::endl;
   }
-} // namespace
+} // namespace test_residual_estimator_order
 
-int
-main(int argc, char **argv)
+TEST(residual_estimator_order)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_order<2>(5);
   test_order<3>(3);
   test_constant<2>();

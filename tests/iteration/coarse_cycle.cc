@@ -29,10 +29,11 @@
 #include <tests/support/check.h>
 #include <tests/support/dense.h>
 #include <tests/support/random_problem.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_coarse_cycle
 {
   constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -497,12 +498,10 @@ namespace
           }
       }
   }
-} // namespace
+} // namespace test_coarse_cycle
 
-int
-main(int argc, char **argv)
+TEST(coarse_cycle)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   for (const bool is_stretched : {false, true})
     {
       test_linear<2>(1, is_stretched);

@@ -18,10 +18,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/random_problem.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_contact_strip
 {
   template <int dim>
   struct Step
@@ -191,14 +192,12 @@ namespace
     strip.update(sticking.truncation.truncation(), sticking.slopes, 2);
     check(strip.is_empty(), "without slip there is no strip");
   }
-} // namespace
+} // namespace test_contact_strip
 
 
 
-int
-main(int argc, char *argv[])
+TEST(contact_strip)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test<2>();
   test<3>();
 }

@@ -29,10 +29,11 @@
 #include <tests/support/check.h>
 #include <tests/support/discretized.h>
 #include <tests/support/random_problem.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_distributed
 {
   template <int dim>
   using Key = std::array<long, dim>;
@@ -625,12 +626,10 @@ namespace
     check_monotonicity(all, seed);
     check_solution(all, alone);
   }
-} // namespace
+} // namespace test_distributed
 
-int
-main(int argc, char **argv)
+TEST(distributed)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test<2>(block_parameters<2>(FrictionLaw::coulomb, .4), 1);
   test<2>(curved_parameters<2>(FrictionLaw::coulomb, .4), 2);
   test<3>(block_parameters<3>(FrictionLaw::coulomb, .4), 3);

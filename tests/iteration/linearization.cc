@@ -28,10 +28,11 @@
 #include <tests/support/check.h>
 #include <tests/support/dense.h>
 #include <tests/support/random_problem.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_linearization
 {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   constexpr double friction = .4;
@@ -676,13 +677,11 @@ namespace
     test_bounds<dim>(problem, random);
     test_refresh(problem, random);
   }
-} // namespace
+} // namespace test_linearization
 
-int
-main(int argc, char **argv)
+TEST(linearization)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  const auto                       law = FrictionLaw::coulomb;
+  const auto law = FrictionLaw::coulomb;
 
   test<2>(block_parameters<2>(law, friction), "normals along y");
   test<3>(block_parameters<3>(law, friction), "normals along z");

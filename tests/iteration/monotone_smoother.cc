@@ -28,10 +28,11 @@
 #include <tests/support/check.h>
 #include <tests/support/discretized.h>
 #include <tests/support/random_problem.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_monotone_smoother
 {
   constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -471,12 +472,10 @@ namespace
     test<dim>(curved_parameters<dim>(FrictionLaw::coulomb, .4),
               "curved, F=0.4");
   }
-} // namespace
+} // namespace test_monotone_smoother
 
-int
-main(int argc, char **argv)
+TEST(monotone_smoother)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_all<2>();
   test_all<3>();
 }

@@ -18,10 +18,11 @@
 #include <tests/support/check.h>
 #include <tests/support/dense.h>
 #include <tests/support/random_problem.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_aggregate_levels
 {
   // Random phases. With few of them changed if there are some already.
   template <int dim>
@@ -279,14 +280,12 @@ namespace
                 1.,
                 "and faster than relaxation alone");
   }
-} // namespace
+} // namespace test_aggregate_levels
 
 
 
-int
-main(int argc, char *argv[])
+TEST(aggregate_levels)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test<2>();
   test<3>();
   Random random(5);

@@ -36,11 +36,12 @@
 #include <string>
 
 #include <tests/support/check.h>
+#include <tests/support/test.h>
 
 using namespace dealii;
 using namespace Friction;
 
-namespace
+namespace test_algebraic_solver
 {
   // To a file, because algebraic multigrid has things to say about processes
   // without rows.
@@ -327,14 +328,12 @@ namespace
     check(error(matrix, x, exact) < 3. * AlgebraicSolver::tolerance,
           "both methods agree");
   }
-} // namespace
+} // namespace test_algebraic_solver
 
 
 
-int
-main(int argc, char **argv)
+TEST(algebraic_solver)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
     output.open("output");
   solve<2>(50);

@@ -17,6 +17,7 @@
 
 #include <tests/support/check.h>
 #include <tests/support/random.h>
+#include <tests/support/test.h>
 
 #include <algorithm>
 #include <array>
@@ -30,7 +31,7 @@ using namespace dealii;
 using namespace Friction;
 using Tests::check_everywhere;
 
-namespace
+namespace test_elimination_cost
 {
   using Size = std::array<unsigned int, 3>;
 
@@ -194,15 +195,12 @@ namespace
     solver.initialize(matrix);
     return solver.is_direct();
   }
-} // namespace
+} // namespace test_elimination_cost
 
 
 
-int
-main(int argc, char **argv)
+TEST(elimination_cost)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-
   for (const Size n : {Size{{20, 2, 1}}, Size{{30, 3, 1}}, Size{{25, 2, 2}}})
     {
       const unsigned int dim         = n[2] > 1 ? 3 : 2;

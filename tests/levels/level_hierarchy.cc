@@ -22,10 +22,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/random_problem.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_level_hierarchy
 {
   template <int dim>
   void
@@ -315,12 +316,10 @@ namespace
     test_transfer(problem, random);
     test_nodes(problem);
   }
-} // namespace
+} // namespace test_level_hierarchy
 
-int
-main(int argc, char **argv)
+TEST(level_hierarchy)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test<2>(1);
   test<2>(2);
   test<3>(3);

@@ -25,10 +25,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/random_problem.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_level_matrices
 {
   using Sparse = Eigen::SparseMatrix<double>;
 
@@ -271,12 +272,10 @@ namespace
     check(largest < n_rows / (dim == 2 ? 20 : 3),
           "that is a small part of all rows");
   }
-} // namespace
+} // namespace test_level_matrices
 
-int
-main(int argc, char **argv)
+TEST(level_matrices)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   for (unsigned int seed = 1; seed <= 2; ++seed)
     test_galerkin<2>(seed);
   for (const unsigned int seed : {3, 5})

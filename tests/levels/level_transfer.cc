@@ -15,10 +15,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_level_transfer
 {
   // The same on any number of processes.
   void
@@ -156,14 +157,12 @@ namespace
     check_everywhere(own_transposed < 1e-14,
                      "corrections of own nodes come back the way of residuals");
   }
-} // namespace
+} // namespace test_level_transfer
 
 
 
-int
-main(int argc, char *argv[])
+TEST(level_transfer)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test<2>("hertz.prm");
   test<3>("half-ball.prm");
 }

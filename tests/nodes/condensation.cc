@@ -14,10 +14,11 @@
 #include <tests/support/dense.h>
 #include <tests/support/discretized.h>
 #include <tests/support/random_problem.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_condensation
 {
   template <int dim>
   struct Body
@@ -215,15 +216,13 @@ namespace
     check(!Condensation<dim>(A, no_contact, free.is_held).factorize(),
           "  a body that nothing holds is noticed");
   }
-} // namespace
+} // namespace test_condensation
 
 
 
-int
-main(int argc, char **argv)
+TEST(condensation)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  Random                           random(1);
+  Random random(1);
   test(RandomProblem<2>(
          block_parameters<2>(FrictionLaw::coulomb, .4), 3, .7, random),
        random);

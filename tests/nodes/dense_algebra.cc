@@ -11,10 +11,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/random.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_dense_algebra
 {
   Eigen::MatrixXd
   random_matrix(const unsigned int m, const unsigned int n, Random &random)
@@ -30,12 +31,11 @@ namespace
   {
     return (A - B).norm() / B.norm();
   }
-} // namespace
+} // namespace test_dense_algebra
 
 
 
-int
-main()
+TEST(dense_algebra)
 {
   Random random(1);
   for (const unsigned int n : {1, 2, 3, 6})

@@ -23,10 +23,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/random_problem.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_interface_damping
 {
   template <int dim>
   using Matrix = Eigen::Matrix<double, dim, dim>;
@@ -224,12 +225,10 @@ namespace
     check(relax<dim>(6, Damping::half, 20).first > 1e-3,
           "and with half of it, too, if each node is a part of its own");
   }
-} // namespace
+} // namespace test_interface_damping
 
-int
-main(int argc, char **argv)
+TEST(interface_damping)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test<2>();
   test<3>();
 }

@@ -23,10 +23,11 @@
 #include <tests/support/discretized.h>
 #include <tests/support/random.h>
 #include <tests/support/random_problem.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_line_relaxation
 {
   template <int dim>
   Parameters
@@ -314,14 +315,12 @@ namespace
           "a ring with chords is cut into lines");
     check(is_tridiagonal, "inside of which only neighbours couple");
   }
-} // namespace
+} // namespace test_line_relaxation
 
 
 
-int
-main(int argc, char **argv)
+TEST(line_relaxation)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const auto name = [](const unsigned int dim, const std::string &what) {
     if (Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
       std::cout << dim << "D, " << what << std::endl;

@@ -25,10 +25,11 @@
 #include <tests/support/check.h>
 #include <tests/support/dense.h>
 #include <tests/support/random_problem.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_node_block_matrix
 {
   // A symmetric, diagonally dominant matrix with a random pattern of small
   // bandwidth; a few rows are empty, as those of hanging nodes are.
@@ -397,12 +398,10 @@ namespace
     check(!other.is_identity(node) || other.agrees(plain, node),
           "the identity agrees with a node never truncated");
   }
-} // namespace
+} // namespace test_node_block_matrix
 
-int
-main(int argc, char **argv)
+TEST(node_block_matrix)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_matrix<2>();
   test_matrix<3>();
   test_pseudo_inverse<2>();

@@ -15,10 +15,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/random_problem.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_row_kernels
 {
   // One entry after the other, in the order of the columns.
   template <int dim>
@@ -229,12 +230,10 @@ namespace
       }
     check(zero, "vectors of all sizes");
   }
-} // namespace
+} // namespace test_row_kernels
 
-int
-main(int argc, char **argv)
+TEST(row_kernels)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_hanging_nodes<2>();
   test_hanging_nodes<3>();
   test_lengths<2>();

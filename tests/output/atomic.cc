@@ -14,9 +14,11 @@
 #include <iostream>
 #include <set>
 
+#include <tests/support/test.h>
+
 using namespace Friction;
 
-namespace
+namespace test_atomic
 {
   void
   list_files(const RunDirectory &directory)
@@ -63,12 +65,10 @@ namespace
     limit.rlim_cur = bytes;
     setrlimit(RLIMIT_FSIZE, &limit);
   }
-} // namespace
+} // namespace test_atomic
 
-int
-main(int argc, char **argv)
+TEST(atomic)
 {
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   std::signal(SIGXFSZ, SIG_IGN);
   std::filesystem::remove_all("atomic-test");
 

@@ -19,6 +19,7 @@
 
 #include <tests/support/check.h>
 #include <tests/support/random.h>
+#include <tests/support/test.h>
 
 #include <cerrno>
 #include <csignal>
@@ -52,7 +53,7 @@ fallocate(int descriptor, int mode, off_t offset, off_t length)
 
 
 
-namespace
+namespace test_checkpoint
 {
   template <int dim>
   using Mesh = parallel::distributed::Triangulation<dim>;
@@ -416,12 +417,10 @@ namespace
     checkpoints.remove_all();
     list(directory);
   }
-} // namespace
+} // namespace test_checkpoint
 
-int
-main(int argc, char **argv)
+TEST(checkpoint)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   std::signal(SIGXFSZ, SIG_IGN);
   test<2>();
   test<3>();

@@ -8,13 +8,12 @@
 #include <sstream>
 #include <thread>
 
+#include <tests/support/test.h>
+
 using namespace Friction;
 
-int
-main(int argc, char *argv[])
+TEST(console)
 {
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-
   Console console(std::cout, Console::Times::hidden);
   for (unsigned int l = 0; l < 10; l += 3)
     {

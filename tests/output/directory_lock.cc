@@ -6,6 +6,7 @@
 #include <common/output/directory_lock.h>
 #include <sys/syscall.h>
 #include <tests/support/check.h>
+#include <tests/support/test.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -39,7 +40,7 @@ flock(int descriptor, int operation) noexcept
 
 
 
-namespace
+namespace test_directory_lock
 {
   // Without what is another one in each run.
   std::string
@@ -66,13 +67,11 @@ namespace
         return anonymous(error.what());
       }
   }
-} // namespace
+} // namespace test_directory_lock
 
-int
-main(int argc, char **argv)
+TEST(directory_lock)
 {
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  const bool                               first =
+  const bool first =
     dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   if (first)
     std::filesystem::remove_all("lock-test");

@@ -28,6 +28,7 @@
 #include <deal.II/numerics/vector_tools_interpolate.h>
 
 #include <tests/support/check.h>
+#include <tests/support/test.h>
 
 #include <cstdint>
 #include <cstring>
@@ -41,7 +42,7 @@
 using namespace dealii;
 using namespace Friction;
 
-namespace
+namespace test_fields
 {
   void
   print_lines_with(const std::string &file, const std::set<std::string> &words)
@@ -419,12 +420,10 @@ namespace
       std::cout << ' ' << value;
     std::cout << std::endl;
   }
-} // namespace
+} // namespace test_fields
 
-int
-main(int argc, char **argv)
+TEST(fields)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   for (const FieldFormat format : {FieldFormat::vtu, FieldFormat::hdf5})
     {
       test<2>(format);

@@ -15,9 +15,11 @@
 #include <iostream>
 #include <set>
 
+#include <tests/support/test.h>
+
 using namespace Friction;
 
-namespace
+namespace test_history
 {
   // The units of all kinds of numbers.
   void
@@ -40,13 +42,10 @@ namespace
         std::cout << std::endl;
       }
   }
-} // namespace
+} // namespace test_history
 
-int
-main(int argc, char **argv)
+TEST(history)
 {
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-
   const RunDirectory directory("history-test/nested/directory");
   History<2>         history(
     directory.file("history.h5"),

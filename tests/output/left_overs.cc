@@ -12,6 +12,8 @@
 #include <iostream>
 #include <set>
 
+#include <tests/support/test.h>
+
 using namespace Friction;
 namespace fs = std::filesystem;
 
@@ -37,11 +39,8 @@ remove(const char *name) noexcept
 
 
 
-int
-main(int argc, char **argv)
+TEST(left_overs)
 {
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-
   const std::set<std::string> names = {// Ours.
                                        "body.pvd",
                                        "contact.pvd",

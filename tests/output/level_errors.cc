@@ -15,11 +15,12 @@
 #include <iostream>
 
 #include <tests/support/check.h>
+#include <tests/support/test.h>
 
 using namespace Friction;
 using namespace Tests;
 
-namespace
+namespace test_level_errors
 {
   bool
   equal(const double a, const double b)
@@ -223,10 +224,9 @@ namespace
     set_errors(open, levels, 2);
     check(unknown(open), "nothing touches any more");
   }
-} // namespace
+} // namespace test_level_errors
 
-int
-main()
+TEST(level_errors)
 {
   test_meshes();
   test_loads();

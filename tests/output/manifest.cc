@@ -4,6 +4,7 @@
 #include <common/output/manifest.h>
 #include <tests/support/check.h>
 #include <tests/support/random.h>
+#include <tests/support/test.h>
 
 #include <filesystem>
 #include <fstream>
@@ -16,7 +17,7 @@
 using namespace Friction;
 namespace fs = std::filesystem;
 
-namespace
+namespace test_manifest
 {
   const fs::path directory = "manifest-test";
 
@@ -63,10 +64,9 @@ namespace
     if (existed)
       write(directory / name, text);
   }
-} // namespace
+} // namespace test_manifest
 
-int
-main()
+TEST(manifest)
 {
   // The value that lists of such checks give for this text.
   std::istringstream digits("123456789");

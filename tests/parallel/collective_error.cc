@@ -5,10 +5,12 @@
 
 #include <iostream>
 
+#include <tests/support/test.h>
+
 using namespace dealii;
 using namespace Friction;
 
-namespace
+namespace test_collective_error
 {
   // What each process has caught, in the order of their ranks.
   template <typename Function>
@@ -32,14 +34,12 @@ namespace
           std::cout << "  " << sentence << std::endl;
       }
   }
-} // namespace
+} // namespace test_collective_error
 
 
 
-int
-main(int argc, char *argv[])
+TEST(collective_error)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const unsigned int rank = Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
   const unsigned int last = Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) - 1;
 

@@ -12,11 +12,12 @@
 #include <string>
 
 #include <tests/support/check.h>
+#include <tests/support/test.h>
 
 using namespace Friction;
 using namespace Tests;
 
-namespace
+namespace test_memory
 {
   double
   left(const std::map<std::string, std::string> &files)
@@ -31,14 +32,12 @@ namespace
     fs::remove_all(folder);
     return result;
   }
-} // namespace
+} // namespace test_memory
 
 
 
-int
-main(int argc, char *argv[])
+TEST(memory)
 {
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const std::string stat = "anon 100\nfile 700\ninactive_file 600\nshmem 1\n";
   check(left({{"memory.max", "1000\n"},
               {"memory.current", "800\n"},

@@ -17,6 +17,7 @@
 #include <tests/support/check.h>
 #include <tests/support/discretized.h>
 #include <tests/support/random_problem.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
@@ -24,7 +25,7 @@ static_assert(!std::is_copy_constructible<GhostExchange>::value &&
                 !std::is_copy_assignable<GhostExchange>::value,
               "Messages that are on their way have one address only.");
 
-namespace
+namespace test_messages
 {
   void
   test_foreign_messages(const Discretized<2> &d, const SolverSettings &settings)
@@ -82,14 +83,12 @@ namespace
                      "every process has ghosts");
     check_everywhere(moves == stays, "and gets the values of all of them");
   }
-} // namespace
+} // namespace test_messages
 
 
 
-int
-main(int argc, char *argv[])
+TEST(messages)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Parameters p = block_parameters<2>(FrictionLaw::coulomb, .4);
   p.refinement.initial_refinements = 4;
   const Scene<2> scene(p);

@@ -7,9 +7,11 @@
 #include <iostream>
 #include <sstream>
 
+#include <tests/support/test.h>
+
 using namespace Friction;
 
-namespace
+namespace test_parameters
 {
   // Read a file with the given text; the sentence if that fails.
   void
@@ -32,10 +34,9 @@ namespace
         std::cout << error.what() << "\n";
       }
   }
-} // namespace
+} // namespace test_parameters
 
-int
-main()
+TEST(parameters)
 {
   const std::string good = "# a comment\n"
                            "subsection Scene\n"

@@ -3,12 +3,13 @@
 
 #include <common/printable.h>
 #include <tests/support/check.h>
+#include <tests/support/test.h>
 
 #include <iostream>
 
 using namespace Friction;
 
-namespace
+namespace test_printable
 {
   std::string
   times(const unsigned int n, const std::string &text)
@@ -18,10 +19,9 @@ namespace
       result += text;
     return result;
   }
-} // namespace
+} // namespace test_printable
 
-int
-main()
+TEST(printable)
 {
   for (const std::string text :
        {"plain text, with 'quotes' and a back\\slash",

@@ -7,92 +7,98 @@
 #include <tests/reference/solutions/dense_contact.h>
 #include <tests/reference/solutions/scenes.h>
 
+#include <tests/support/test.h>
+
 using namespace Reference;
 
-// In units that leave digits for a comparison with absolute tolerance 1e-6:
-// forces and displacements times 100, energy times 10000.
-void
-print_block(const unsigned int n, const double F)
+namespace test_dense_contact
 {
-  const ContactProblem  problem  = block(n, F);
-  const ContactSolution solution = solve(problem);
-  const double          energy =
-    0.5 * solution.displacement.dot(solution.residual); // no forces given
-  std::printf("block %2ux%-2u F=%.2f  open %u sliding %u sticking %u\n",
-              n,
-              n,
-              F,
-              solution.count(State::open),
-              solution.count(State::sliding),
-              solution.count(State::sticking));
-  std::printf("  100 N = %.8f  100 T = %.8f  10000 strain energy = %.8f\n",
-              100. * solution.normal_force.sum(),
-              100. * std::abs(solution.tangential_force.sum()),
-              1e4 * energy);
-  std::printf("  100 u_x = %.8f at (0,0), %.8f at (1,0)\n",
-              100. * solution.displacement[0],
-              100. * solution.displacement[2 * n]);
-}
+
+  // In units that leave digits for a comparison with absolute tolerance 1e-6:
+  // forces and displacements times 100, energy times 10000.
+  void
+  print_block(const unsigned int n, const double F)
+  {
+    const ContactProblem  problem  = block(n, F);
+    const ContactSolution solution = solve(problem);
+    const double          energy =
+      0.5 * solution.displacement.dot(solution.residual); // no forces given
+    std::printf("block %2ux%-2u F=%.2f  open %u sliding %u sticking %u\n",
+                n,
+                n,
+                F,
+                solution.count(State::open),
+                solution.count(State::sliding),
+                solution.count(State::sticking));
+    std::printf("  100 N = %.8f  100 T = %.8f  10000 strain energy = %.8f\n",
+                100. * solution.normal_force.sum(),
+                100. * std::abs(solution.tangential_force.sum()),
+                1e4 * energy);
+    std::printf("  100 u_x = %.8f at (0,0), %.8f at (1,0)\n",
+                100. * solution.displacement[0],
+                100. * solution.displacement[2 * n]);
+  }
 
 
-void
-print_raous(const unsigned int n)
-{
-  const ContactProblem  problem  = raous(n);
-  const ContactSolution solution = solve(problem);
-  std::printf("raous %ux%u u_x in micrometres:", n, n);
-  for (const double x : {0., 1.25, 5., 7.5, 11.25})
-    std::printf(
-      " %.3f",
-      1e6 * solution.displacement[2 * node_at(problem.mesh, {1e-3 * x, 0.})]);
-  double last_open = -1., last_sliding = -1., first_sticking = -1.;
-  for (unsigned int p = 0; p < problem.contact.size(); ++p)
-    {
-      const double x = 1e3 * problem.mesh.nodes[problem.contact[p].node][0];
-      if (solution.state[p] == State::open)
-        last_open = x;
-      if (solution.state[p] == State::sliding)
-        last_sliding = x;
-      if (solution.state[p] == State::sticking && first_sticking < 0.)
-        first_sticking = x;
-    }
-  std::printf("\n  open to %.2f, sliding to %.2f, sticking from %.2f mm\n",
-              last_open,
-              last_sliding,
-              first_sticking);
-}
+  void
+  print_raous(const unsigned int n)
+  {
+    const ContactProblem  problem  = raous(n);
+    const ContactSolution solution = solve(problem);
+    std::printf("raous %ux%u u_x in micrometres:", n, n);
+    for (const double x : {0., 1.25, 5., 7.5, 11.25})
+      std::printf(
+        " %.3f",
+        1e6 * solution.displacement[2 * node_at(problem.mesh, {1e-3 * x, 0.})]);
+    double last_open = -1., last_sliding = -1., first_sticking = -1.;
+    for (unsigned int p = 0; p < problem.contact.size(); ++p)
+      {
+        const double x = 1e3 * problem.mesh.nodes[problem.contact[p].node][0];
+        if (solution.state[p] == State::open)
+          last_open = x;
+        if (solution.state[p] == State::sliding)
+          last_sliding = x;
+        if (solution.state[p] == State::sticking && first_sticking < 0.)
+          first_sticking = x;
+      }
+    std::printf("\n  open to %.2f, sliding to %.2f, sticking from %.2f mm\n",
+                last_open,
+                last_sliding,
+                first_sticking);
+  }
 
 
-// Largest error of a patch test, relative to the largest displacement, and
-// whether all nodes are in the state they should be in.
-void
-check_patch(const char *name, const StickSlip &scene)
-{
-  const ContactProblem  problem  = scene.problem(6, 5, 0.2);
-  const ContactSolution solution = solve(problem);
-  double                error = 0., size = 0.;
-  for (unsigned int p = 0; p < problem.mesh.nodes.size(); ++p)
-    {
-      const Eigen::Vector2d exact = scene.displacement(problem.mesh.nodes[p]);
-      error                       = std::max(
-        error, (solution.displacement.segment<2>(2 * p) - exact).norm());
-      size = std::max(size, exact.norm());
-    }
-  const bool states =
-    solution.count(scene.sticks() ? State::sticking : State::sliding) ==
-    problem.contact.size();
-  std::printf("patch %s: %s, exact to 1e-12: %s, states: %s\n",
-              name,
-              scene.sticks() ? "sticks" : "slides",
-              error <= 1e-12 * size ? "yes" : "no",
-              states ? "right" : "wrong");
-  if (error > 1e-12 * size)
-    std::printf("  error %.3e\n", error / size);
-}
+  // Largest error of a patch test, relative to the largest displacement, and
+  // whether all nodes are in the state they should be in.
+  void
+  check_patch(const char *name, const StickSlip &scene)
+  {
+    const ContactProblem  problem  = scene.problem(6, 5, 0.2);
+    const ContactSolution solution = solve(problem);
+    double                error = 0., size = 0.;
+    for (unsigned int p = 0; p < problem.mesh.nodes.size(); ++p)
+      {
+        const Eigen::Vector2d exact = scene.displacement(problem.mesh.nodes[p]);
+        error                       = std::max(
+          error, (solution.displacement.segment<2>(2 * p) - exact).norm());
+        size = std::max(size, exact.norm());
+      }
+    const bool states =
+      solution.count(scene.sticks() ? State::sticking : State::sliding) ==
+      problem.contact.size();
+    std::printf("patch %s: %s, exact to 1e-12: %s, states: %s\n",
+                name,
+                scene.sticks() ? "sticks" : "slides",
+                error <= 1e-12 * size ? "yes" : "no",
+                states ? "right" : "wrong");
+    if (error > 1e-12 * size)
+      std::printf("  error %.3e\n", error / size);
+  }
+} // namespace test_dense_contact
 
 
-int
-main()
+
+TEST(dense_contact)
 {
   const double d = 0.01, F = 0.4, U = StickSlip::threshold(d, F);
   check_patch("stick", StickSlip(0.5 * U, d, F));

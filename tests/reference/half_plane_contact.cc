@@ -6,10 +6,11 @@
 
 #include <tests/reference/solutions/half_plane_contact.h>
 
+#include <tests/support/test.h>
+
 using namespace Reference;
 
-int
-main()
+TEST(half_plane_contact)
 {
   {
     const HertzFactors frictionless = hertz_factors(0.3, 0.);

@@ -14,10 +14,12 @@
 #include <iostream>
 #include <set>
 
+#include <tests/support/test.h>
+
 using namespace dealii;
 using namespace Friction;
 
-namespace
+namespace test_geometry
 {
   Parameters
   parameters(const std::vector<std::string> &overrides)
@@ -145,28 +147,26 @@ namespace
         std::cout << error.what() << std::endl;
       }
   }
-} // namespace
 
-template <int dim>
-void
-write_mesh(const std::vector<std::string> &overrides,
-           const std::string              &file_name)
+  template <int dim>
+  void
+  write_mesh(const std::vector<std::string> &overrides,
+             const std::string              &file_name)
+  {
+    Triangulation<dim> mesh;
+    Scene<dim>(parameters(overrides)).make_coarse_mesh(mesh);
+    GridOut grid_out;
+    grid_out.set_flags(GridOutFlags::Msh(true, true));
+    std::ofstream file(file_name);
+    file.precision(17);
+    grid_out.write_msh(mesh, file);
+  }
+} // namespace test_geometry
+
+
+
+TEST(geometry)
 {
-  Triangulation<dim> mesh;
-  Scene<dim>(parameters(overrides)).make_coarse_mesh(mesh);
-  GridOut grid_out;
-  grid_out.set_flags(GridOutFlags::Msh(true, true));
-  std::ofstream file(file_name);
-  file.precision(17);
-  grid_out.write_msh(mesh, file);
-}
-
-
-
-int
-main(int argc, char **argv)
-{
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   std::cout.precision(4);
 
   half_disc();

@@ -16,10 +16,11 @@
 
 #include <tests/support/check.h>
 #include <tests/support/discretized.h>
+#include <tests/support/test.h>
 
 using namespace Tests;
 
-namespace
+namespace test_materials
 {
   std::string
   number(const double value)
@@ -306,14 +307,12 @@ namespace
     check(Materials<2>(Material(1., .3)).is_homogeneous(),
           "a body of one material");
   }
-} // namespace
+} // namespace test_materials
 
 
 
-int
-main(int argc, char **argv)
+TEST(materials)
 {
-  const Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   layered_blocks<2>();
   layered_blocks<3>();
   mesh_file();

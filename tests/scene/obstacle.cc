@@ -11,13 +11,13 @@
 #include <iostream>
 
 #include <tests/support/check.h>
+#include <tests/support/test.h>
 
 using namespace dealii;
 using namespace Friction;
 using namespace Tests;
 
-int
-main()
+TEST(obstacle)
 {
   std::cout.precision(5);
 

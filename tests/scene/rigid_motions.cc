@@ -25,11 +25,12 @@
 #include <random>
 
 #include <tests/support/check.h>
+#include <tests/support/test.h>
 
 using namespace Friction;
 using namespace Tests;
 
-namespace
+namespace test_rigid_motions
 {
   template <int dim>
   unsigned int
@@ -362,14 +363,12 @@ namespace
     check(n_free_columns(p, {3, 0, 0}, {2, 1, 1}) == 2,
           "which it has to share a column with");
   }
-} // namespace
+} // namespace test_rigid_motions
 
 
 
-int
-main(int argc, char *argv[])
+TEST(rigid_motions)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_parts();
   test_contact();
   test_cones();

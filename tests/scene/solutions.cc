@@ -10,10 +10,12 @@
 #include <functional>
 #include <iostream>
 
+#include <tests/support/test.h>
+
 using namespace dealii;
 using namespace Friction;
 
-namespace
+namespace test_solutions
 {
   template <int dim>
   std::string
@@ -197,14 +199,10 @@ namespace
               << scene.traction_conditions().size() << " traction, "
               << scene.pinned_points().size() << " pinned" << std::endl;
   }
-} // namespace
+} // namespace test_solutions
 
-int
-main(int argc, char **argv)
+TEST(solutions)
 {
-  // Reading a mesh may be an error of one process, which all have to learn of.
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-
   const Tensor<1, 2> long_block({3., 1.}), block({2., 1.});
   check("manufactured", {}, long_block);
   check("manufactured", {"Contact/Friction coefficient=0.8"}, long_block);

@@ -93,14 +93,53 @@ function(friction_study_program target)
   add_dependencies(tests-optimised ${target})
 endfunction()
 
-# pickup_tests([OPTIMISED] [FULL name ...]): deal.II's tests of a folder. Those that are
-# named have the label full, the others quick, and all of them optimised if it says so. In
-# debug mode their programs are built with all others, so that ctest only runs them.
+# friction_tests_program(target source ...): one that runs tests of deal.II's kind, each
+# by its name, see test.h. In debug mode it is built with all others, so that ctest only
+# runs it, otherwise when a test wants it. deal.II's macro makes a program for each test,
+# unless it is there: here it is, as another name of this one.
+function(friction_tests_program target)
+  friction_executable(${target} ${ARGN})
+  target_link_libraries(${target} test-main ${TEST_LIBRARIES})
+  target_compile_definitions(${target} PRIVATE SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
+  set_target_properties(${target} PROPERTIES
+    UNITY_BUILD ${FRICTION_UNITY_BUILD}
+    UNITY_BUILD_BATCH_SIZE 4)
+  if(NOT FRICTION_ASSERTIONS)
+    set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)
+  endif()
+  string(TOLOWER ${CMAKE_BUILD_TYPE} _mode)
+  foreach(_source ${ARGN})
+    string(REPLACE ".cc" "" _name ${_source})
+    add_executable(${_category}.${_name}.${_mode} ALIAS ${target})
+  endforeach()
+endfunction()
+
+# pickup_tests([OPTIMISED] [FULL name ...] [ALONE name ...]): deal.II's tests of a folder,
+# which are one program, but for those that are alone, since they replace functions of the
+# system. Those after FULL have that label, the others quick, and all of them optimised if
+# it says so.
 function(pickup_tests)
-  cmake_parse_arguments(_pickup "OPTIMISED" "" "FULL" ${ARGN})
+  cmake_parse_arguments(_pickup "OPTIMISED" "" "FULL;ALONE" ${ARGN})
+  get_filename_component(_category ${CMAKE_CURRENT_SOURCE_DIR} NAME)
+  file(GLOB _outputs RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS *.output)
+  list(TRANSFORM _outputs REPLACE "\\..*" "")
+  list(REMOVE_DUPLICATES _outputs)
+  set(_sources)
+  set(_programs ${_category}-tests)
+  foreach(_name ${_outputs})
+    set(${_category}_${_name}_RUNARGS_PREFIX env FRICTION_TEST=${_name})
+    if(_name IN_LIST _pickup_ALONE)
+      friction_tests_program(${_category}-${_name} ${_name}.cc)
+      list(APPEND _programs ${_category}-${_name})
+    else()
+      list(APPEND _sources ${_name}.cc)
+    endif()
+  endforeach()
+  friction_tests_program(${_category}-tests ${_sources})
   deal_ii_pickup_tests()
 
   set(_found)
+  set(_is_quick OFF)
   get_property(_tests DIRECTORY PROPERTY TESTS)
   foreach(_test ${_tests})
     # Others of this folder have theirs.
@@ -120,6 +159,8 @@ function(pickup_tests)
     elseif(_name IN_LIST _pickup_FULL)
       set(_label full)
       list(APPEND _found ${_name})
+    else()
+      set(_is_quick ON)
     endif()
     set(_processes 1)
     if(_test MATCHES "mpirun=([0-9]+)")
@@ -142,28 +183,9 @@ function(pickup_tests)
     endif()
   endforeach()
 
-  get_property(_targets DIRECTORY PROPERTY BUILDSYSTEM_TARGETS)
-  foreach(_target ${_targets})
-    get_target_property(_type ${_target} TYPE)
-    if(_type STREQUAL "EXECUTABLE")
-      # In debug mode with all others, whatever deal.II's macro says.
-      set(_on_demand ON)
-      if(FRICTION_ASSERTIONS)
-        set(_on_demand OFF)
-      endif()
-      set_target_properties(${_target} PROPERTIES EXCLUDE_FROM_ALL ${_on_demand})
-      friction_precompile(${_target} friction)
-      string(REGEX REPLACE "^[^.]*\\.([^.]*)\\..*" "\\1" _name ${_target})
-      if(_pickup_OPTIMISED)
-        add_dependencies(tests-optimised ${_target})
-      elseif(NOT _name IN_LIST _pickup_FULL)
-        add_dependencies(tests-quick ${_target})
-      endif()
-      # A file of deal.II 9.4 that makes a test start again from compiling if
-      # ctest was interrupted: it would be compiled anew in the first run.
-      get_target_property(_sources ${_target} SOURCES)
-      list(FILTER _sources EXCLUDE REGEX "interrupt_guard.cc$")
-      set_target_properties(${_target} PROPERTIES SOURCES "${_sources}")
-    endif()
-  endforeach()
+  if(_pickup_OPTIMISED)
+    add_dependencies(tests-optimised ${_programs})
+  elseif(_is_quick)
+    add_dependencies(tests-quick ${_programs})
+  endif()
 endfunction()
