@@ -2,11 +2,12 @@
 # The step program on input that is wrong, or too much for it: each case ends
 # with a status other than 0 and one sentence, and leaves no file behind.
 #
-# Usage: bad_input.sh PROGRAM SCENES [MPIEXEC NUMPROC_FLAG]
+# Usage: bad_input.sh PROGRAM SCENES MPIEXEC NUMPROC_FLAG [FORK_SERVER]
 program=$1
 scenes=$2
 mpiexec=$3
 numproc_flag=$4
+server=$5
 
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
@@ -34,14 +35,32 @@ verdict()
   fi
 }
 
+# With a fork server (tests/support/fork_server.cc) the program is loaded once.
+if [ -n "$server" ]; then
+  mkfifo requests answers
+  LD_PRELOAD=$server "$program" <requests >answers &
+  exec 3>requests 4<answers
+fi
+
+# start ARGUMENTS...: of the program.
+start()
+{
+  if [ -n "$server" ]; then
+    printf '%s\0' $(($# + 4)) "$work" stdout stderr "$program" "$@" >&3
+    read -r status <&4
+  else
+    "$program" "$@" >stdout 2>stderr </dev/null
+    status=$?
+  fi
+}
+
 # run SCENE OVERRIDES...: with a fresh output directory.
 run()
 {
   rm -rf results
   scene=$1
   shift
-  "$program" "$scene" Output/Directory=results "$@" >stdout 2>stderr
-  status=$?
+  start "$scene" Output/Directory=results "$@"
 }
 
 # expect_sentence NAME PATTERN: what a run with bad input must have done.
@@ -154,8 +173,7 @@ quoted 'a section of 10 MB' 'no section .aaa.*aaa.; did you mean' long.prm
 quoted 'an expression of 10 MB' 'aaa.* cannot be understood' long.prm
 { sed /Directory/d "$block" && echo 'subsection Output' &&
   printf 'set Directory = ' && cat long && printf '\nend\n'; } >long.prm
-"$program" long.prm >stdout 2>stderr
-status=$?
+start long.prm
 expect_sentence 'a directory of 10 MB' 'cannot be created'
 [ "$(wc -c <stderr)" -lt 700 ] || verdict 'a directory of 10 MB' ' is long'
 printf 'set \033[31mred\007 \377\302\233 = 1\n' >binary.prm
@@ -179,11 +197,9 @@ bad 'an option that stands alone' "'--help' has to be" "$block" --help
 
 # Permissions do not stop root, but not even root can create a folder below a file.
 echo 'a file' >file
-"$program" "$block" Output/Directory=file/results >stdout 2>stderr
-status=$?
+start "$block" Output/Directory=file/results
 expect_sentence 'output directory that cannot be created' 'file/results'
-"$program" "$block" Output/Directory= >stdout 2>stderr
-status=$?
+start "$block" Output/Directory=
 expect_sentence 'no output directory' 'name a directory'
 
 # A limit on the size of files stands for a full device; with the signal
@@ -194,6 +210,7 @@ full()
     trap '' XFSZ
     # Open MPI's shared memory is a file, too, and longer than that.
     export OMPI_MCA_btl=self
+    server= # whose copies would have neither
     ulimit -f "$1"
     shift
     run "$@"
@@ -264,23 +281,20 @@ cat stdout stderr |
 verdict 'a budget for a force that cannot be reached' "$problem"
 
 # Help needs no scene; without any argument it is an error.
-"$program" --help >stdout 2>stderr
-status=$?
+start --help
 problem=
 [ $status -eq 0 ] || problem="$problem status $status"
 grep -q '^Usage: ' stdout || problem="$problem no usage"
 verdict 'help' "$problem"
 
-"$program" >stdout 2>stderr
-status=$?
+start
 problem=
 [ $status -eq 2 ] || problem="$problem status $status"
 grep -q '^Usage: ' stderr || problem="$problem no usage"
 verdict 'no argument' "$problem"
 
 # What is printed as defaults can be read back.
-"$program" --parameters >stdout 2>stderr
-status=$?
+start --parameters
 problem=
 [ $status -eq 0 ] || problem="$problem status $status"
 grep -q 'subsection Solver' stdout || problem="$problem no parameters"
@@ -343,4 +357,6 @@ if [ -n "$mpiexec" ]; then
     Refinement/Levels=0
 fi
 
+# The server ends with its input.
+exec 3>&-
 [ $failures -eq 0 ]
