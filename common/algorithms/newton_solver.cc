@@ -38,7 +38,7 @@ namespace Friction
     constexpr unsigned int most_short_steps = 3, most_steps = 60;
 
     // What is left of the largest violation may be rounding.
-    constexpr double rounding = 1e-12;
+    constexpr double rounding_of_violations = 1e-12;
 
     // Vectors that GMRES keeps before it starts anew.
     constexpr unsigned int basis_size = 50;
@@ -372,8 +372,8 @@ namespace Friction
             wrong   = violation(residual);
             largest = std::max(largest, wrong);
             if (steps == 0 || wrong <= (1 - 1e-4 * length) * before ||
-                wrong <= rounding * largest || length <= shortest ||
-                !std::isfinite(wrong))
+                wrong <= rounding_of_violations * largest ||
+                length <= shortest || !std::isfinite(wrong))
               break;
             length /= 2;
           }
