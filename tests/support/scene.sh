@@ -11,6 +11,9 @@
 #
 # Usage: scene.sh PROGRAM SCENE EXPECTED RESULTS N CYCLES NUMDIFF COMPARE MPIEXEC \
 #          NUMPROC_FLAG [OVERRIDES...]
+#
+# PYTHON in the environment is one that can read what has been written; otherwise one is
+# looked for.
 program=$1
 scene=$2
 expected=$3
@@ -29,8 +32,15 @@ rm -rf "$results"
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 
+# A program on one process starts no daemon of Open MPI 4, which takes longer than many
+# of these runs; for its files it has a directory of its own.
+on_one_process()
+{
+  OMPI_MCA_ess_singleton_isolated=1 TMPDIR="$work" "$@"
+}
+
 if [ "$n" -eq 1 ]; then
-  "$program" "$scene" "Output/Directory=$results" Output/Verification=true "$@" \
+  on_one_process "$program" "$scene" "Output/Directory=$results" Output/Verification=true "$@" \
     >"$work/output" 2>&1
 else
   "$mpiexec" "$numproc_flag" "$n" "$program" "$scene" \
@@ -80,12 +90,11 @@ if [ -n "$(find "$results" -name '*.part*')" ]; then
 fi
 
 if [ "$n" -ne 1 ]; then
-  "$compare" "$alone/history.h5" "$results/history.h5" "$n" || exit 1
+  on_one_process "$compare" "$alone/history.h5" "$results/history.h5" "$n" || exit 1
 fi
 
-# Some python that can read what has been written.
-for python in python3 /usr/bin/python3 none; do
-  "$python" -c 'import h5py, numpy' 2>/dev/null && break
+for python in $PYTHON python3 /usr/bin/python3 none; do
+  [ "$python" = "$PYTHON" ] || "$python" -c 'import h5py, numpy' 2>/dev/null && break
 done
 if [ "$python" = none ]; then
   echo "not verified: there is no python3 with h5py"

@@ -39,6 +39,7 @@ function(add_scene_tests PROGRAM BOUND)
         set(_label full)
       endif()
       label_test(${_test} LABEL ${_label} PROCESSES ${_n})
+      set_property(TEST ${_test} APPEND PROPERTY ENVIRONMENT PYTHON=${FRICTION_PYTHON})
       if(_n EQUAL 1)
         set_tests_properties(${_test} PROPERTIES
           FIXTURES_SETUP ${PROGRAM}.${_name})
