@@ -34,7 +34,6 @@
 #include <deal.II/lac/la_parallel_vector.h>
 
 #include <deal.II/numerics/data_out.h>
-#include <deal.II/numerics/vector_tools.h>
 
 #include <Eigen/Dense>
 

@@ -62,12 +62,13 @@ namespace Friction
 
 
 
-    // The vector with these components in the first tangents of a contact node.
+    // The vector with these components along the first tangents of a contact
+    // node.
     template <int dim>
     Tensor<1, dim>
-    tangential_part(const ContactNode<dim>            &node,
-                    const std::array<double, dim - 1> &components,
-                    const unsigned int                 n_tangents = dim - 1)
+    along_tangents(const ContactNode<dim>            &node,
+                   const std::array<double, dim - 1> &components,
+                   const unsigned int                 n_tangents = dim - 1)
     {
       Tensor<1, dim> sum;
       for (unsigned int t = 0; t < n_tangents; ++t)
@@ -162,14 +163,14 @@ namespace Friction
           coulomb ? std::max(0., pressing) : state.normal_force(p);
         const double bound = problem.effective_coefficient(node) * tau;
         const auto   r_T =
-          tangential_part<dim>(node,
-                               tangential_components<dim>(node, residual),
-                               node.n_free_tangents);
+          along_tangents<dim>(node,
+                              tangential_components<dim>(node, residual),
+                              node.n_free_tangents);
         const auto   components = slip_components<dim>(node, u);
-        const auto   u_T        = tangential_part<dim>(node, components);
+        const auto   u_T        = along_tangents<dim>(node, components);
         const double slip       = force_for<dim>(problem, node.node, u_T);
         const auto   slips_by =
-          tangential_part<dim>(node, components, node.n_free_tangents) /
+          along_tangents<dim>(node, components, node.n_free_tangents) /
           (slip == 0 ? 1. : u_T.norm());
         raise(result.cone, relative(r_T.norm() - bound));
 

@@ -7,7 +7,6 @@
 #include <common/parallel/reductions.h>
 #include <common/parallel/run_clock.h>
 
-#include <deal.II/base/geometry_info.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/timer.h>
 
@@ -121,50 +120,47 @@ namespace Friction
 
   // Prescribed displacements are collected by an object of the class for
   // constraints, which is never used for eliminating anything. A node that
-  // several conditions prescribe has the value of the first one. This is what
-  // VectorTools::interpolate_boundary_values() does, for any element and each
-  // condition anew: in debug mode a fifth of a run in 3D. Where degrees of
-  // freedom are values at vertices, one look for faces is enough.
+  // several conditions prescribe has the value of the first one, and the others
+  // are not asked. VectorTools::interpolate_boundary_values() would do it for
+  // any element, and look for faces again for each condition: in debug mode a
+  // fifth of a run in 3D. Where degrees of freedom are values at vertices, once
+  // is enough.
   template <int dim>
   AffineConstraints<double>
   Discretization<dim>::find_prescribed_values() const
   {
     AffineConstraints<double> prescribed = Compatibility::make_constraints(
       dofs.locally_owned_dofs(), DoFTools::extract_locally_relevant_dofs(dofs));
-    const auto prescribe =
-      [&](const auto &condition, const auto &cell, const unsigned int v) {
-        Vector<double> value(0);
-        for (unsigned int d = 0; d < dim; ++d)
-          if (condition.components[d])
-            {
-              const auto dof = cell->vertex_dof_index(v, d);
-              if (prescribed.is_constrained(dof))
-                continue;
-              if (value.size() == 0)
-                {
-                  value.reinit(dim);
-                  condition.displacement->vector_value(cell->vertex(v), value);
-                }
-              prescribed.add_line(dof);
-              prescribed.set_inhomogeneity(dof, value[d]);
-            }
-      };
-    std::vector<
-      std::pair<typename DoFHandler<dim>::active_cell_iterator, unsigned int>>
-      faces;
+    std::vector<typename DoFHandler<dim>::face_iterator> faces;
     for (const auto &cell : dofs.active_cell_iterators())
       if (!cell->is_artificial() && cell->at_boundary())
         for (const unsigned int f : cell->face_indices())
           if (cell->at_boundary(f))
-            faces.emplace_back(cell, f);
+            faces.push_back(cell->face(f));
+    const auto prescribe = [&](const DirichletCondition<dim> &condition,
+                               const auto                    &face,
+                               const unsigned int             v) {
+      Vector<double> value(0);
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const auto dof = face->vertex_dof_index(v, d);
+          if (!condition.components[d] || prescribed.is_constrained(dof))
+            continue;
+          if (value.size() == 0)
+            {
+              value.reinit(dim);
+              condition.displacement->vector_value(face->vertex(v), value);
+            }
+          prescribed.add_line(dof);
+          prescribed.set_inhomogeneity(dof, value[d]);
+        }
+    };
     on_all_processes(Compatibility::mpi_communicator(dofs), [&]() {
       for (const auto &condition : the_scene.dirichlet_conditions())
-        for (const auto &[cell, f] : faces)
-          if (cell->face(f)->boundary_id() == condition.boundary_id)
-            for (unsigned int v = 0; v < cell->face(f)->n_vertices(); ++v)
-              prescribe(condition,
-                        cell,
-                        GeometryInfo<dim>::face_to_cell_vertices(f, v));
+        for (const auto &face : faces)
+          if (face->boundary_id() == condition.boundary_id)
+            for (unsigned int v = 0; v < face->n_vertices(); ++v)
+              prescribe(condition, face, v);
     });
 
     // Single vertices may be pinned, to keep a body that is only pushed from

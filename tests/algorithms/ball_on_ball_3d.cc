@@ -20,9 +20,9 @@ using namespace Tests;
 TEST(ball_on_ball_3d)
 {
   // Another mesh than that of the test, for more digits.
-  const std::string  size = Tests::arguments().empty()
-     ? "Refinement/Maximum dofs=5000"
-     : Tests::arguments()[0];
+  const bool        is_finer = !Tests::arguments().empty();
+  const std::string size =
+    is_finer ? Tests::arguments()[0] : "Refinement/Maximum dofs=5000";
   NestedIteration<3> nest(without_safeguards(
     read_parameters(SCENES_3D_DIR "/ball-on-ball.prm", {size})));
   const double       R = 2. / 3, E = 1 / (1 - .3 * .3), start = .01;
@@ -65,7 +65,7 @@ TEST(ball_on_ball_3d)
     most          = std::max(most, (s - d) / P);
     largest_way   = std::max(largest_way, s);
     largest_force = std::max(largest_force, P);
-    if (!Tests::arguments().empty())
+    if (is_finer)
       std::cout << "P " << P << ", a " << a << ", measured " << radius << ", p "
                 << p << ", s " << s << ", d " << d << ", (s-d)/P "
                 << (s - d) / P << std::endl;
@@ -85,14 +85,13 @@ TEST(ball_on_ball_3d)
   check_below(std::abs(largest_force / .0021978 - 1),
               1e-5,
               "the obstacle exerts the force of the platen");
-  check_below(pressure_error,
-              !Tests::arguments().empty() ? .005 : .04,
-              "the largest pressure is Hertz's");
+  check_below(
+    pressure_error, is_finer ? .005 : .04, "the largest pressure is Hertz's");
   check_below(radius_error,
               1.,
               "the radius of the zone of contact is Hertz's, to a node");
   check_below((most - least) * largest_force / largest_way,
-              !Tests::arguments().empty() ? .012 : .05,
+              is_finer ? .012 : .05,
               "the platen's way is Hertz's approach and a part in proportion");
   check_below(most_cycles, 20, "few cycles for each force");
 }

@@ -70,9 +70,9 @@ namespace test_mindlin
 TEST(mindlin)
 {
   // Another mesh than that of the test, for more digits.
-  const std::string  size = Tests::arguments().empty()
-     ? "Refinement/Maximum dofs=5000"
-     : Tests::arguments()[0];
+  const bool        is_finer = !Tests::arguments().empty();
+  const std::string size =
+    is_finer ? Tests::arguments()[0] : "Refinement/Maximum dofs=5000";
   NestedIteration<2> nest(
     without_safeguards(read_parameters(SCENES_DIR "/mindlin.prm", {size})));
   nest.begin();
@@ -88,7 +88,7 @@ TEST(mindlin)
       const unsigned int cold = cycles_from_nothing(nest);
       n_converged += nest.solve().converged;
       const unsigned int warm = nest.report().cycles.size();
-      if (!Tests::arguments().empty())
+      if (is_finer)
         std::cout << "t = " << nest.scene().time() << ": " << warm
                   << " cycles, from nothing " << cold << std::endl;
       n_warm += warm;
@@ -122,7 +122,7 @@ TEST(mindlin)
     }
   check(smallest < .5, "the zone of stick shrinks to less than a half");
   check_below(error,
-              !Tests::arguments().empty() ? .008 : .03,
+              is_finer ? .008 : .03,
               "c/a is that of Cattaneo and Mindlin, to a node");
   check_below(masing, 1e-3, "Masing's rule holds to a thousandth");
   check_below(std::abs(steps[12].Q / steps[4].Q - 1),
@@ -130,7 +130,7 @@ TEST(mindlin)
               "the loop is closed to a ten-thousandth");
   check(worse == 0 && n_warm < .8 * n_cold,
         "all steps take fewer cycles than from nothing");
-  if (!Tests::arguments().empty())
+  if (is_finer)
     std::cout << error << ' ' << masing << ' ' << n_warm << ' ' << n_cold
               << std::endl;
 }

@@ -53,9 +53,9 @@ namespace test_mindlin_3d
 TEST(mindlin_3d)
 {
   // Another mesh than that of the test, for more digits.
-  const std::string  size = Tests::arguments().empty()
-     ? "Refinement/Maximum dofs=5000"
-     : Tests::arguments()[0];
+  const bool        is_finer = !Tests::arguments().empty();
+  const std::string size =
+    is_finer ? Tests::arguments()[0] : "Refinement/Maximum dofs=5000";
   NestedIteration<3> nest(
     without_safeguards(read_parameters(SCENES_3D_DIR "/mindlin.prm", {size})));
   nest.begin();
@@ -80,7 +80,7 @@ TEST(mindlin_3d)
       const double from = i <= 2 ? 0. : steps[2].force[0];
       const double c    = std::cbrt(
         1 - std::abs(steps[i].force[0] - from) / ((i <= 2 ? 1 : 2) * F * P));
-      if (!Tests::arguments().empty())
+      if (is_finer)
         std::cout << "t = " << i << ": c/a " << steps[i].c / steps[i].a
                   << ", closed form " << c << std::endl;
       error = std::max(

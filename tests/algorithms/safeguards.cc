@@ -9,6 +9,8 @@
 #include <common/algorithms/nested_iteration.h>
 #include <common/algorithms/safeguarded_solver.h>
 
+#include <Eigen/LU>
+
 #include <iostream>
 
 #include <tests/support/check.h>

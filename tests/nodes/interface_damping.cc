@@ -12,7 +12,6 @@
 // where every node is a part of its own, half of the damping is too little for
 // some.
 
-#include <common/dense_algebra.h>
 #include <common/nodes/interface_damping.h>
 
 #include <deal.II/base/mpi.h>
@@ -22,6 +21,7 @@
 #include <iostream>
 
 #include <tests/support/check.h>
+#include <tests/support/dense.h>
 #include <tests/support/random_problem.h>
 #include <tests/support/test.h>
 
@@ -91,7 +91,7 @@ namespace test_interface_damping
              const double       s)
   {
     // Proximal gradient steps, projected by alternation (Dykstra).
-    const double L = eigenpairs(D).values.maxCoeff();
+    const double L = Tests::eigenvalues(D).maxCoeff();
     Value<dim>   y = x;
     for (unsigned int step = 0; step < 5000; ++step)
       {

@@ -13,7 +13,6 @@ using namespace Reference;
 
 namespace test_dense_contact
 {
-
   // In units that leave digits for a comparison with absolute tolerance 1e-6:
   // forces and displacements times 100, energy times 10000.
   void

@@ -14,7 +14,6 @@ using namespace Reference;
 
 namespace test_dense_contact_3d
 {
-
   const char *
   yes(const bool condition)
   {

@@ -15,7 +15,6 @@
 // some
 //   column is held otherwise, and hand that on to all columns that they share.
 
-#include <common/dense_algebra.h>
 #include <common/input_error.h>
 #include <common/scene/rigid_motions.h>
 
@@ -25,6 +24,7 @@
 #include <random>
 
 #include <tests/support/check.h>
+#include <tests/support/dense.h>
 #include <tests/support/test.h>
 
 using namespace Friction;
@@ -87,7 +87,7 @@ namespace test_rigid_motions
         Eigen::MatrixXd columns(contact.rows(), nodes.size());
         for (unsigned int i = 0; i < nodes.size(); ++i)
           columns.col(i) = contact.col(nodes[i]);
-        const Eigen::VectorXd pressures = least_squares(columns, loads);
+        const Eigen::VectorXd pressures = Tests::least_squares(columns, loads);
         if (pressures.minCoeff() >= -1e-9 &&
             (columns * pressures - loads).norm() < 1e-9 * loads.norm())
           return true;

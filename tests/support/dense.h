@@ -19,7 +19,8 @@ namespace Tests
   /// $A^{-1}B$.
   Eigen::MatrixXd solve(const Eigen::MatrixXd &A, const Eigen::MatrixXd &B);
 
-  /// One of many, with zeros for the others, if A is singular.
+  /// The same where A may be singular: of many solutions the one whose
+  /// undetermined unknowns are zero.
   Eigen::MatrixXd solve_singular(const Eigen::MatrixXd &A,
                                  const Eigen::MatrixXd &B);
 

@@ -96,7 +96,8 @@ endfunction()
 # friction_tests_program(target source ...): one that runs tests of deal.II's kind, each
 # by its name, see test.h. In debug mode it is built with all others, so that ctest only
 # runs it, otherwise when a test wants it. deal.II's macro makes a program for each test,
-# unless it is there: here it is, as another name of this one.
+# unless it is there: here it is, as another name of this one. For pickup_tests(), which
+# says what the category is.
 function(friction_tests_program target)
   friction_executable(${target} ${ARGN})
   target_link_libraries(${target} test-main ${TEST_LIBRARIES})
@@ -116,14 +117,19 @@ endfunction()
 
 # pickup_tests([OPTIMISED] [FULL name ...] [ALONE name ...]): deal.II's tests of a folder,
 # which are one program, but for those that are alone, since they replace functions of the
-# system. Those after FULL have that label, the others quick, and all of them optimised if
-# it says so.
+# system; their program has their name, like output-checkpoint. Those after FULL have that
+# label, the others quick, and all of them optimised if it says so.
 function(pickup_tests)
   cmake_parse_arguments(_pickup "OPTIMISED" "" "FULL;ALONE" ${ARGN})
   get_filename_component(_category ${CMAKE_CURRENT_SOURCE_DIR} NAME)
   file(GLOB _outputs RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS *.output)
   list(TRANSFORM _outputs REPLACE "\\..*" "")
   list(REMOVE_DUPLICATES _outputs)
+  foreach(_name ${_pickup_ALONE})
+    if(NOT _name IN_LIST _outputs)
+      message(FATAL_ERROR "There is no test ${_name} in ${CMAKE_CURRENT_SOURCE_DIR}.")
+    endif()
+  endforeach()
   set(_sources)
   set(_programs ${_category}-tests)
   foreach(_name ${_outputs})

@@ -2,6 +2,7 @@
 fork_server.cc."""
 import os
 import select
+import signal
 import subprocess
 import tempfile
 
@@ -31,14 +32,17 @@ class StartedProgram:
         if self.process is None:
             self.process = subprocess.Popen(
                 [self.program], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                env=dict(os.environ, LD_PRELOAD=self.server))
+                start_new_session=True, env=dict(os.environ, LD_PRELOAD=self.server))
         request = [str(len(words)), *words]
         self.process.stdin.write(b''.join(os.fsencode(w) + b'\0' for w in request))
         self.process.stdin.flush()
         if not select.select([self.process.stdout], [], [], timeout)[0]:
-            self.process.kill()
+            os.killpg(self.process.pid, signal.SIGKILL)
             raise subprocess.TimeoutExpired(words, timeout)
-        return int(self.process.stdout.readline())
+        answer = self.process.stdout.readline()
+        if not answer:
+            raise ChildProcessError('The fork server of %s has ended.' % self.program)
+        return int(answer)
 
     def close(self):
         if self.process:

@@ -1,7 +1,6 @@
 #include <deal.II/base/mpi.h>
 
 #include <cstdlib>
-#include <exception>
 #include <iostream>
 #include <map>
 #include <tests/support/test.h>
@@ -56,15 +55,7 @@ main(int argc, char **argv)
       return 2;
     }
   Tests::given_arguments.assign(words.begin() + 1, words.end());
-  try
-    {
-      dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-      test->second();
-    }
-  catch (const std::exception &error)
-    {
-      std::cerr << error.what() << std::endl;
-      return 1;
-    }
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  test->second();
   return 0;
 }

@@ -18,10 +18,11 @@
 //     ... what it does; names of test_block are known here
 //   }
 //
-// MPI has been started before, with one thread per process, and the program
-// ends with status 1 if there is an exception. ctest says by the variable
+// MPI has been started before, with one thread per process. Nothing catches
+// exceptions: one on any process ends all of them. ctest says by the variable
 // FRICTION_TEST which test the program is to be; by hand it is the first
-// argument.
+// argument. A test that replaces functions of the system is a program of its
+// own, see pickup_tests().
 #define TEST(name)                                              \
   namespace test_##name                                         \
   {                                                             \
