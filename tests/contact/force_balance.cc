@@ -7,6 +7,7 @@
 
 #include <common/algorithms/nested_iteration.h>
 #include <common/contact/force_balance.h>
+#include <common/contact/solution_check.h>
 #include <common/parameters/parameters.h>
 
 #include <tests/support/check.h>
@@ -171,6 +172,24 @@ namespace test_force_balance
         check_everywhere(pin[0] == 0 && pin[2] == 0 && std::abs(pin[1]) > 1e-6,
                          "the pin bears what is pinned");
       }
+
+    // What a run is told of it; and of multiples of the displacement, whose
+    // forces are not those of the loads.
+    const auto check_multiple = [&](const double factor) {
+      VectorType u = nest->displacement();
+      u *= factor;
+      return check_solution(nest->discretization(), u, nest->state(), 1e-6);
+    };
+    const SolutionCheck good = check_multiple(1.), near = check_multiple(1.001),
+                        far = check_multiple(1e6);
+    check_everywhere(good.is_solution && good.sentence.empty(),
+                     "it is a solution");
+    check_everywhere(near.is_solution &&
+                       near.sentence.find("more exact") != std::string::npos,
+                     "a thousandth too much is warned of");
+    check_everywhere(!far.is_solution &&
+                       far.sentence.find("its size") != std::string::npos,
+                     "a million times as much is none");
   }
 
 
