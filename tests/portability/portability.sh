@@ -64,6 +64,12 @@ cp /etc/resolv.conf "$root/etc/resolv.conf" 2>/dev/null || true
 # Unstable is never up to date when a mirror is a day old.
 echo 'Acquire::Check-Valid-Until "false";' >"$root/etc/apt/apt.conf.d/99friction"
 
+# Which state of the sources is tried: they may go on in the meantime. With a + what is not
+# committed.
+git="git -c safe.directory=$sources -C $sources"
+state=$($git rev-parse --short=7 HEAD)
+[ -z "$($git status --porcelain -- . ':!doc/portability.md')" ] || state=$state+
+
 # The work tree, without what is built in it.
 mkdir "$root/friction"
 (cd "$sources" &&
@@ -94,10 +100,6 @@ chroot "$root" /usr/bin/env -i HOME=/root LC_ALL=C.UTF-8 \
   DEBIAN_FRONTEND=noninteractive \
   bash /friction/tests/portability/in_root.sh "$compiler" "$tag" /friction/row ||
   echo "in_root.sh ended with an error" >&2
-# Which state of the sources that is; with a + what is not committed.
-git="git -c safe.directory=$sources -C $sources"
-state=$($git rev-parse --short=7 HEAD)
-[ -z "$($git status --porcelain -- . ':!doc/portability.md')" ] || state=$state+
 [ -s "$result" ] || echo "| $system | $name | ? | no | ? | none | none | nothing could be installed |" >"$result"
 sed -i "s/\$/ $state |/" "$result"
 cat "$result"
