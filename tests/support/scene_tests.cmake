@@ -40,9 +40,12 @@ function(add_scene_tests PROGRAM BOUND)
       endif()
       label_test(${_test} LABEL ${_label} PROCESSES ${_n})
       set_property(TEST ${_test} APPEND PROPERTY ENVIRONMENT PYTHON=${FRICTION_PYTHON})
+      # Those on several processes wait for those on one, which come before all others on
+      # one, see label_test(): so there is still something to run beside them.
       if(_n EQUAL 1)
         set_tests_properties(${_test} PROPERTIES
-          FIXTURES_SETUP ${PROGRAM}.${_name})
+          FIXTURES_SETUP ${PROGRAM}.${_name}
+          COST 150)
       else()
         set_tests_properties(${_test} PROPERTIES
           FIXTURES_REQUIRED ${PROGRAM}.${_name})
