@@ -10,10 +10,10 @@ import tempfile
 class StartedProgram:
     """Runs PROGRAM. SERVER is the library fork_server, or empty: then it is started anew
     each time. Runs have the environment of the first one, and one is at an end before the
-    next begins."""
+    next begins. ERRORS: what becomes of bytes that they print and that are no text."""
 
-    def __init__(self, program, server=''):
-        self.program, self.server = program, server
+    def __init__(self, program, server='', errors='strict'):
+        self.program, self.server, self.errors = program, server, errors
         self.process = None
 
     def run(self, arguments, timeout=120):
@@ -25,10 +25,13 @@ class StartedProgram:
             else:
                 status = subprocess.run(words, stdin=subprocess.DEVNULL, stdout=out,
                                         stderr=err, timeout=timeout).returncode
-            texts = [file.read().decode() for file in map(open_bytes, (out, err))]
+            texts = [file.read().decode('utf-8', self.errors)
+                     for file in map(open_bytes, (out, err))]
         return subprocess.CompletedProcess(words, status, *texts)
 
     def ask(self, words, timeout):
+        if any('\0' in word for word in words):
+            raise ValueError('embedded null byte')  # as subprocess.run() does
         if self.process is None:
             self.process = subprocess.Popen(
                 [self.program], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
@@ -38,6 +41,7 @@ class StartedProgram:
         self.process.stdin.flush()
         if not select.select([self.process.stdout], [], [], timeout)[0]:
             os.killpg(self.process.pid, signal.SIGKILL)
+            self.close()
             raise subprocess.TimeoutExpired(words, timeout)
         answer = self.process.stdout.readline()
         if not answer:
@@ -47,6 +51,7 @@ class StartedProgram:
     def close(self):
         if self.process:
             self.process.communicate()
+        self.process = None
 
 
 def open_bytes(file):
