@@ -37,14 +37,14 @@ class ContactBoundary:
                 table.setdefault(tuple(sorted(cell[corners])), []).append(cell)
         self.problem = None
         outwards = np.ones(len(faces))
+        middles, middle_vectors = level.vertices[faces].mean(axis=1), vectors.mean(axis=1)
         for i, face in enumerate(faces):
             cells = table.get(tuple(sorted(face)), [])
             if len(cells) != 1:
                 self.problem = "a face of the contact boundary is inside of the body"
                 continue
-            away = (level.vertices[face].mean(axis=0)
-                    - level.vertices[cells[0]].mean(axis=0))
-            outwards[i] = np.sign(away @ vectors[i].mean(axis=0))
+            away = middles[i] - level.vertices[cells[0]].mean(axis=0)
+            outwards[i] = np.sign(away @ middle_vectors[i])
         vectors = vectors * outwards[:, None, None]
 
         self.measure = add_up(n, faces, np.einsum(

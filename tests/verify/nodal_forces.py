@@ -20,11 +20,11 @@ def at_gauss_points(level, cells):
     X, result = level.vertices[level.cells[cells]], []
     for q, weight in enumerate(weights):
         # J_de = d x_d / d xi_e; shape functions have gradients G = (d xi / d x)^T.
-        J = np.einsum("kvd,ve->kde", X, on_unit_cell[q])
+        J = X.transpose(0, 2, 1) @ on_unit_cell[q]
         dx = np.linalg.det(J) * weight
         if not np.all(dx > 0):
             raise NotReadable("the mesh has cells that are turned inside out.")
-        result.append((np.einsum("ve,ked->kvd", on_unit_cell[q], np.linalg.inv(J)), dx))
+        result.append((on_unit_cell[q] @ np.linalg.inv(J), dx))
     return result
 
 
@@ -37,8 +37,8 @@ def lame_constants(level, cells):
 def mean_of(values, at_points):
     """Over each cell, of values (k x ...) at its points."""
     volume = sum(dx for _, dx in at_points)
-    total = sum(np.einsum("k,k...->k...", dx, v) for v, (_, dx) in zip(values, at_points))
-    return np.einsum("k,k...->k...", 1 / volume, total)
+    # By transposing, cells come last, and each has a factor.
+    return sum(v.T * (dx / volume) for v, (_, dx) in zip(values, at_points)).T
 
 
 def body_integrals(level):
@@ -52,7 +52,7 @@ def body_integrals(level):
     lame, mu, averaged = lame_constants(level, cells)
     U = level.displacement[level.cells]
     at_points = at_gauss_points(level, cells)
-    gradients = [np.einsum("kvi,kvj->kij", U, G) for G, _ in at_points]
+    gradients = [U.transpose(0, 2, 1) @ G for G, _ in at_points]
     if averaged.any():
         expansion = mean_of([np.trace(g, axis1=1, axis2=2) for g in gradients],
                             at_points)
@@ -69,7 +69,7 @@ def body_integrals(level):
         # test function its integral remains, as it should.
         stress = (2 * mu[:, None, None] * strain
                   + (lame * theta)[:, None, None] * np.eye(dim))
-        forces = forces + np.einsum("k,kvj,kij->kvi", dx, G, stress)
+        forces = forces + G @ (stress.transpose(0, 2, 1) * dx[:, None, None])
         energy += np.sum(dx * (mu * np.sum(strain**2, axis=(1, 2))
                                + lame / 2 * theta**2))
         diagonal = diagonal + dx[:, None] * (
@@ -107,17 +107,18 @@ class Rows:
         # Blocks of the node and each corner of the cell.
         lame, mu, averaged = lame_constants(level, self.cells)
         at_points = at_gauss_points(level, self.cells)
-        own = [np.einsum("kv,kvd->kd", weights, G) for G, _ in at_points]
+        own = [(weights[:, None] @ G)[:, 0] for G, _ in at_points]
         h, H = mean_of(own, at_points), mean_of([G for G, _ in at_points], at_points)
         blocks = 0
         for (G, dx), g in zip(at_points, own):
             first = np.where(averaged[:, None], h, g)
             second = np.where(averaged[:, None, None], H, G)
-            blocks = (blocks
-                      + np.einsum("k,ki,kvj->kvij", dx * lame, first, second)
-                      + np.einsum("k,kj,kvi->kvij", dx * mu, g, G)
-                      + np.einsum("k,kl,kvl->kv", dx * mu, g, G)[:, :, None, None]
-                      * np.eye(level.dim))
+            # Entries kvij, of cell k, corner v and directions i and j.
+            first, second = first * (dx * lame)[:, None], second[:, :, None]
+            g = g * (dx * mu)[:, None]
+            blocks = (blocks + first[:, None, :, None] * second
+                      + g[:, None, None] * G[..., None]
+                      + (G @ g[..., None])[..., None] * np.eye(level.dim))
         self.blocks = blocks
         self.diagonal = np.zeros((len(self.nodes), level.dim, level.dim))
         np.add.at(self.diagonal, self.at, np.einsum("kv,kvij->kij", weights, blocks))

@@ -1,11 +1,13 @@
 """The unit interval, square or cube. Its corner number v is at the end x_d = 1 in
 direction d if bit d of v is set."""
 
+import functools
 import itertools
 
 import numpy as np
 
 
+@functools.lru_cache(None)
 def gauss_points(n, dim):
     """Points (n^dim x dim) of the unit interval, square or cube, the first coordinate
     running fastest, and their weights."""
