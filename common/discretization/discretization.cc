@@ -137,6 +137,11 @@ namespace Friction
         for (const unsigned int f : cell->face_indices())
           if (cell->at_boundary(f))
             faces.push_back(cell->face(f));
+    const auto add = [&](const types::global_dof_index dof,
+                         const double                  value) {
+      prescribed.add_line(dof);
+      prescribed.set_inhomogeneity(dof, value);
+    };
     const auto prescribe = [&](const DirichletCondition<dim> &condition,
                                const auto                    &face,
                                const unsigned int             v) {
@@ -151,8 +156,7 @@ namespace Friction
               value.reinit(dim);
               condition.displacement->vector_value(face->vertex(v), value);
             }
-          prescribed.add_line(dof);
-          prescribed.set_inhomogeneity(dof, value[d]);
+          add(dof, value[d]);
         }
     };
     on_all_processes(Compatibility::mpi_communicator(dofs), [&]() {
@@ -173,10 +177,7 @@ namespace Friction
           cell, [&](const PinnedPoint<dim> &pin, const unsigned int v) {
             const auto dof = cell->vertex_dof_index(v, pin.component);
             if (!prescribed.is_constrained(dof))
-              {
-                prescribed.add_line(dof);
-                prescribed.set_inhomogeneity(dof, pin.value);
-              }
+              add(dof, pin.value);
           });
     prescribed.close();
     return prescribed;
@@ -353,8 +354,7 @@ namespace Friction
       if (!nodal_constraints->is_hanging(node))
         largest =
           std::max(largest, trace<dim>(leaf_operator.diagonal_block(node)));
-    return max_over_processes(std::array<double, 1>{{largest}},
-                              nodal_constraints->communicator())[0];
+    return max_over_processes(largest, nodal_constraints->communicator());
   }
 
 
