@@ -154,7 +154,7 @@ namespace test_node_block_matrix
           const Eigen::MatrixXd block = dense.block(dim * i, dim * i, dim, dim);
           const Eigen::VectorXd defect = b.segment(dim * i, dim) -
             product(dense.middleRows(dim * i, dim), x);
-          x.segment(dim * i, dim) += product(inverse(block), defect);
+          x.segment(dim * i, dim) += product(Tests::inverse(block), defect);
         }
     };
     GhostExchange          no_ghosts;
