@@ -16,12 +16,16 @@ namespace Friction
 
 
 
+  // Products of such small matrices are lazy, here and below: for large ones
+  // Eigen has others, which are more to compile than the rest of this.
   Eigen::MatrixXd
   left_absolute_value(const Eigen::MatrixXd &A)
   {
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeFullU);
-    return svd.matrixU() * svd.singularValues().asDiagonal() *
-      svd.matrixU().transpose();
+    Eigen::MatrixXd                         U = svd.matrixU();
+    for (Eigen::Index i = 0; i < U.cols(); ++i)
+      U.col(i) *= svd.singularValues()[i];
+    return U.lazyProduct(svd.matrixU().transpose());
   }
 
 
@@ -30,6 +34,20 @@ namespace Friction
   least_squares(const Eigen::MatrixXd &A, const Eigen::VectorXd &b)
   {
     return A.colPivHouseholderQr().solve(b);
+  }
+
+
+
+  Eigen::MatrixXd
+  pseudo_inverse(const Eigen::MatrixXd &A)
+  {
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(
+      A, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const auto      n = svd.rank();
+    Eigen::MatrixXd V = svd.matrixV().leftCols(n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      V.col(i) /= svd.singularValues()[i];
+    return V.lazyProduct(svd.matrixU().leftCols(n).transpose());
   }
 
 

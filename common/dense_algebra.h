@@ -29,6 +29,10 @@ namespace Friction
   Eigen::VectorXd least_squares(const Eigen::MatrixXd &A,
                                 const Eigen::VectorXd &b);
 
+  /** The inverse of Moore and Penrose of a square matrix, by its singular
+   * values; those that are but rounding errors of the largest count as zero. */
+  Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd &A);
+
   /** Of a matrix that has one. */
   Eigen::MatrixXd inverse(const Eigen::MatrixXd &A);
 } // namespace Friction

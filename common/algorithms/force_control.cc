@@ -430,8 +430,7 @@ namespace Friction
           is_known         = report.converged;
         }
       if (is_known)
-        compliance =
-          stiffness.completeOrthogonalDecomposition().pseudoInverse();
+        compliance = pseudo_inverse(stiffness);
     };
 
     if (!report.converged)

@@ -6,6 +6,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <array>
+#include <type_traits>
 #include <vector>
 
 namespace Friction
@@ -74,19 +75,27 @@ namespace Friction
     return value;
   }
 
-  /** What all processes have, on all of them, in the order of their ranks. */
+  /** The bytes of all processes, in the order of their ranks. */
+  std::vector<char>
+  gather_bytes_from_all(const char *own, std::size_t size, const MPI_Comm comm);
+
+  /** What all processes have, on all of them, in the order of their ranks.
+   * Utilities::MPI::all_gather() can send whatever can be packed, which takes a
+   * compiler seconds for each type; here it is what can be copied as bytes. */
   template <typename Value>
   std::vector<Value>
   gather_from_all(const std::vector<Value> &own, const MPI_Comm comm)
   {
-    // A process by itself need not pack its values in order to keep them.
+    static_assert(std::is_trivially_copyable<Value>::value,
+                  "Only what can be copied as bytes can be gathered.");
     if (dealii::Utilities::MPI::n_mpi_processes(comm) == 1)
       return own;
-    std::vector<Value> all;
-    for (const std::vector<Value> &part :
-         dealii::Utilities::MPI::all_gather(comm, own))
-      all.insert(all.end(), part.begin(), part.end());
-    return all;
+    const std::vector<char> bytes =
+      gather_bytes_from_all(reinterpret_cast<const char *>(own.data()),
+                            own.size() * sizeof(Value),
+                            comm);
+    const Value *const first = reinterpret_cast<const Value *>(bytes.data());
+    return {first, first + bytes.size() / sizeof(Value)};
   }
 
   /** Whether it is true on any process. */

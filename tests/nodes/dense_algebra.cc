@@ -1,6 +1,6 @@
 // Decompositions of small matrices, by what defines them: eigenpairs, the
 // absolute value of a matrix that is not symmetric, combinations of columns
-// some of which depend on others, the inverse.
+// some of which depend on others, the inverse, and that of Moore and Penrose.
 
 #include <common/dense_algebra.h>
 #include <common/iteration/best_combination.h>
@@ -69,7 +69,29 @@ TEST(dense_algebra)
             "which is positive semidefinite");
 
       check_below(difference(A * Friction::inverse(A), I), 1e-11, "inverse");
+
+      // Of the second one, the last column depends on the others.
+      Eigen::MatrixXd B = A;
+      B.col(n - 1).setZero();
+      if (n > 2)
+        B.col(n - 1) = A.col(0) + 2. * A.col(1);
+      for (const Eigen::MatrixXd &any : {A, n > 1 ? B : A})
+        {
+          const Eigen::MatrixXd X = Friction::pseudo_inverse(any);
+          check_below(
+            difference(any * X * any, any), 1e-11, "a pseudo-inverse");
+          check_below(difference(X * any * X, X) / (1. + X.norm()),
+                      1e-11,
+                      "of which the matrix is one");
+          check_below(difference(any * X, (any * X).transpose()) +
+                        difference(X * any, (X * any).transpose()),
+                      1e-10,
+                      "and both products are symmetric");
+        }
     }
+
+  check(Friction::pseudo_inverse(Eigen::MatrixXd::Zero(2, 2)).isZero(0.),
+        "the pseudo-inverse of zero is zero");
 
   std::cout << "least squares" << std::endl;
   Eigen::MatrixXd       A = random_matrix(7, 4, random);
