@@ -41,25 +41,44 @@ namespace Friction
     if (!materials.uses_means())
       return;
 
-    const QGauss<dim> quadrature(dof_handler.get_fe().degree + 1);
-    FEValues<dim>     fe_values(mapping,
-                            dof_handler.get_fe(),
-                            quadrature,
-                            update_gradients | update_JxW_values);
-    const FEValuesExtractors::Vector displacements(0);
-    std::vector<double>              divergences(quadrature.size());
+    // Both body and displacement are linear in each coordinate of the unit
+    // cell, so that two points per direction, all of the same weight, integrate
+    // Jacobian and divergence exactly. FEValues would take several times as
+    // long.
+    constexpr unsigned int n_corners = GeometryInfo<dim>::vertices_per_cell;
+    const QGauss<dim>      quadrature(2);
+    std::vector<std::array<Tensor<1, dim>, n_corners>> shape_gradients;
+    for (const Point<dim> &point : quadrature.get_points())
+      {
+        shape_gradients.emplace_back();
+        for (unsigned int v = 0; v < n_corners; ++v)
+          shape_gradients.back()[v] =
+            GeometryInfo<dim>::d_linear_shape_function_gradient(point, v);
+      }
+    Assert(dof_handler.get_fe().degree == 1, ExcNotImplemented());
     means.resize(dof_handler.get_triangulation().n_active_cells());
+    std::array<Tensor<1, dim>, n_corners> values;
     for (const auto &cell : dof_handler.active_cell_iterators())
-      if (!cell->is_artificial())
+      if (!cell->is_artificial() &&
+          materials.of(cell).volumetric_strain() == VolumetricStrain::mean)
         {
-          fe_values.reinit(cell);
-          fe_values[displacements].get_function_divergences(displacement,
-                                                            divergences);
+          const auto vertices = mapping.get_vertices(cell);
+          for (unsigned int v = 0; v < n_corners; ++v)
+            for (unsigned int c = 0; c < dim; ++c)
+              values[v][c] = displacement(cell->vertex_dof_index(v, c));
           double volume = 0., integral = 0.;
-          for (const unsigned int q : fe_values.quadrature_point_indices())
+          for (const auto &gradients : shape_gradients)
             {
-              volume += fe_values.JxW(q);
-              integral += divergences[q] * fe_values.JxW(q);
+              Tensor<2, dim> jacobian, gradient;
+              for (unsigned int v = 0; v < n_corners; ++v)
+                for (unsigned int d = 0; d < dim; ++d)
+                  {
+                    jacobian[d] += vertices[v][d] * gradients[v];
+                    gradient[d] += values[v][d] * gradients[v];
+                  }
+              const double determinant_here = determinant(jacobian);
+              volume += determinant_here;
+              integral += trace(gradient * invert(jacobian)) * determinant_here;
             }
           means[cell->active_cell_index()] = integral / volume;
         }
