@@ -59,7 +59,7 @@ from inputs import Input, read, times, write
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(os.path.dirname(HERE), 'support'))
-from started_program import StartedProgram  # noqa: E402
+from started_program import NoArgument, StartedProgram  # noqa: E402
 ROOT = os.path.dirname(os.path.dirname(HERE))
 # Of each kind of finding.
 MOST_SAVED = 20
@@ -191,10 +191,10 @@ class Fuzzer:
                 self.programs[dimension], self.a.fork_server, 'replace')
         try:
             done = self.started[dimension].run(arguments, self.a.timeout)
-        except ValueError as error:
+        except NoArgument as error:
             return (2, '', 'x: %s.' % error)
-        except subprocess.TimeoutExpired:
-            return (None, '', '')
+        except subprocess.TimeoutExpired as ended:
+            return (None, ended.output, ended.stderr)
         return (done.returncode, done.stdout, done.stderr)
 
     def message_problem(self, err):

@@ -86,7 +86,9 @@ class Faults:
         self.name = Path(options.program).name
         self.failures = 0
         self.wholes = {}
-        # For what runs to its end on one process.
+        # For what runs to its end on one process, which has a folder of its own for
+        # MPI's files like all others, see start().
+        os.environ["TMPDIR"] = tempfile.mkdtemp(prefix="mpi-", dir=self.work)
         self.started = options.fork_server and StartedProgram(
             options.program, options.fork_server)
 

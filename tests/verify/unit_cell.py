@@ -15,7 +15,10 @@ def gauss_points(n, dim):
     x, w = (x + 1) / 2, w / 2
     points = [p[::-1] for p in itertools.product(x, repeat=dim)]
     weights = [np.prod(p) for p in itertools.product(w, repeat=dim)]
-    return np.array(points), np.array(weights)
+    result = np.array(points), np.array(weights)
+    for values in result:
+        values.flags.writeable = False  # all callers get the same
+    return result
 
 
 def corner_functions(points):
