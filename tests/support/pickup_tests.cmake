@@ -13,8 +13,8 @@
 #   studies    figures, charts and benchmarks, on tiny meshes
 #   pages      prose, commands of pages, pages in a browser
 #
-# Besides there are, with sanitizers, shipped, every scene as it is shipped, and build,
-# what only builds, where programs are built on demand.
+# Besides there are build, what makes the programs of tests, or sees that they are up to
+# date, before these tests, and, with sanitizers, shipped, every scene as it is shipped.
 #
 # deal.II itself sets a property LABEL, which ctest does not know.
 
@@ -37,10 +37,32 @@ set(FRICTION_MPI_ENVIRONMENT
   PMIX_MCA_mca_base_suppress_deprecated_warning=1
   PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe)
 
+# Where there are three places for tests on two processors, one on two processes would
+# hardly ever find two places free at once, and in the end run alone. So there it needs
+# one, but a lock, too, which only one of them has. Tests of deal.II's kind and of scenes,
+# those on one process, run beside it, and give way to it. On more than two processes a test
+# has the machine for itself: processes that wait give their processors away then, and would
+# do so to others as well.
+cmake_host_system_information(RESULT FRICTION_PROCESSORS QUERY NUMBER_OF_LOGICAL_CORES)
+set(GIVE_WAY)
+if(FRICTION_PROCESSORS LESS 4)
+  set(GIVE_WAY sh ${CMAKE_CURRENT_LIST_DIR}/give_way.sh)
+endif()
+
+# needs_processes(name n): of a test.
+function(needs_processes name n)
+  if(n EQUAL 2 AND FRICTION_PROCESSORS LESS 4)
+    set_property(TEST ${name} APPEND PROPERTY RESOURCE_LOCK processes)
+    set_tests_properties(${name} PROPERTIES PROCESSORS 1)
+  else()
+    set_tests_properties(${name} PROPERTIES PROCESSORS ${n})
+  endif()
+endfunction()
+
 # label_test(name LABEL label [PROCESSES n] [BUILDS]): a test that was added already. Its
 # folder is the part of its name before the first slash. On more than two processes it is
 # never quick. If it builds something in this tree, only make can do so several times at
-# once.
+# once, and not even make what others want as well, like the library.
 function(label_test name)
   cmake_parse_arguments(_test "BUILDS" "LABEL;PROCESSES" "" ${ARGN})
   if(NOT _test_PROCESSES)
@@ -50,23 +72,25 @@ function(label_test name)
     set(_test_LABEL full)
   endif()
   string(REGEX REPLACE "/.*" "" _folder ${name})
+  set(_labels ${_test_LABEL} ${_folder})
+  list(REMOVE_DUPLICATES _labels)
   set_tests_properties(${name} PROPERTIES
-    LABELS "${_test_LABEL};${_folder}"
-    PROCESSORS ${_test_PROCESSES}
+    LABELS "${_labels}"
     TIMEOUT ${TEST_TIME_LIMIT})
   set_property(TEST ${name} APPEND PROPERTY ENVIRONMENT
     ${FRICTION_MPI_ENVIRONMENT})
-  if(_test_BUILDS AND NOT CMAKE_GENERATOR MATCHES "Makefiles")
-    set_tests_properties(${name} PROPERTIES RESOURCE_LOCK build_tree)
+  needs_processes(${name} ${_test_PROCESSES})
+  if(_test_BUILDS AND
+      (name MATCHES "^build/" OR NOT CMAKE_GENERATOR MATCHES "Makefiles"))
+    set_property(TEST ${name} APPEND PROPERTY RESOURCE_LOCK build_tree)
   endif()
   # What takes long and one processor begins early, or it would have the other
   # processors wait in the end.
   if(NOT _test_LABEL STREQUAL "quick" AND _test_PROCESSES EQUAL 1)
     set_tests_properties(${name} PROPERTIES COST 100)
   endif()
-  # A test on two processes begins before all of them: it fits into the place of one
-  # that ends, and has one on one process beside it. Where it comes later, places
-  # become free one by one, and it waits for the end and then runs alone.
+  # And one on two processes before all of them, so that there are always others beside
+  # it. (Before that ctest begins what others need, whatever it costs.)
   if(_test_PROCESSES EQUAL 2)
     set_tests_properties(${name} PROPERTIES COST 200)
   endif()
@@ -80,9 +104,17 @@ if(NOT FRICTION_ASSERTIONS)
   add_dependencies(tests-optimised step-friction-2d step-friction-3d)
 endif()
 
+# only_for_tests(target): built with all others in debug mode only.
+function(only_for_tests target)
+  if(NOT FRICTION_ASSERTIONS)
+    set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)
+  endif()
+endfunction()
+
 # friction_test_program(target source ...): a program that tests need.
 function(friction_test_program target)
   friction_executable(${target} ${ARGN})
+  only_for_tests(${target})
   add_dependencies(tests-quick ${target})
 endfunction()
 
@@ -94,25 +126,36 @@ function(friction_study_program target)
 endfunction()
 
 # friction_tests_program(target source ...): one that runs tests of deal.II's kind, each
-# by its name, see test.h. In debug mode it is built with all others, so that ctest only
-# runs it, otherwise when a test wants it. deal.II's macro makes a program for each test,
-# unless it is there: here it is, as another name of this one. For pickup_tests(), which
+# by its name, see test.h. In debug mode it is built with all others, otherwise when a
+# test wants it. deal.II's macro makes a program for each test, unless it is there: here
+# it is, as a file. A test of its own, build/<target>, makes the file, or sees that it is up
+# to date, before all others that need it: make takes half a second for that, as long as many
+# of them. deal.II's targets <test>.test, called by hand, do not. For pickup_tests(), which
 # says what the category is.
 function(friction_tests_program target)
   friction_executable(${target} ${ARGN})
   target_link_libraries(${target} test-main ${TEST_LIBRARIES})
   target_compile_definitions(${target} PRIVATE SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
   set_target_properties(${target} PROPERTIES
+    RUNTIME_OUTPUT_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}
     UNITY_BUILD ${FRICTION_UNITY_BUILD}
-    UNITY_BUILD_BATCH_SIZE 4)
-  if(NOT FRICTION_ASSERTIONS)
-    set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)
-  endif()
+    UNITY_BUILD_BATCH_SIZE 8)
+  only_for_tests(${target})
   string(TOLOWER ${CMAKE_BUILD_TYPE} _mode)
   foreach(_source ${ARGN})
     string(REPLACE ".cc" "" _name ${_source})
-    add_executable(${_category}.${_name}.${_mode} ALIAS ${target})
+    set(_program ${_category}.${_name}.${_mode})
+    add_executable(${_program} IMPORTED)
+    set_target_properties(${_program} PROPERTIES
+      IMPORTED_LOCATION ${CMAKE_CURRENT_BINARY_DIR}/${target})
   endforeach()
+  add_test(NAME build/${target}
+    COMMAND ${CMAKE_COMMAND} --build ${CMAKE_BINARY_DIR} --target ${target} --parallel 2)
+  label_test(build/${target} LABEL build BUILDS)
+  set_tests_properties(build/${target} PROPERTIES
+    FIXTURES_SETUP ${target}
+    TIMEOUT 3600
+    COST 1000)
 endfunction()
 
 # pickup_tests([OPTIMISED] [FULL name ...] [ALONE name ...]): deal.II's tests of a folder,
@@ -133,7 +176,8 @@ function(pickup_tests)
   set(_sources)
   set(_programs ${_category}-tests)
   foreach(_name ${_outputs})
-    set(${_category}_${_name}_RUNARGS_PREFIX env FRICTION_TEST=${_name})
+    set(${_category}_${_name}_RUNARGS_PREFIX
+      ${GIVE_WAY} env FRICTION_TEST=${_name})
     if(_name IN_LIST _pickup_ALONE)
       friction_tests_program(${_category}-${_name} ${_name}.cc)
       list(APPEND _programs ${_category}-${_name})
@@ -142,6 +186,8 @@ function(pickup_tests)
     endif()
   endforeach()
   friction_tests_program(${_category}-tests ${_sources})
+  # deal.II's macro pads the category, for its messages.
+  set(_folder ${_category})
   deal_ii_pickup_tests()
 
   set(_found)
@@ -153,12 +199,20 @@ function(pickup_tests)
     if(_labels)
       continue()
     endif()
+    string(REGEX REPLACE "^[^/]*/([^.]*)\\..*" "\\1" _name ${_test})
     # Since 9.5 deal.II builds a program that several tests need in a test of its own.
+    if(_test MATCHES "^test_dependency/")
+      string(REGEX REPLACE "^test_dependency/[^.]*\\.([^.]*)\\..*" "\\1" _name ${_test})
+    endif()
+    set(_program ${_folder}-tests)
+    if(_name IN_LIST _pickup_ALONE)
+      set(_program ${_folder}-${_name})
+    endif()
+    set_property(TEST ${_test} APPEND PROPERTY FIXTURES_REQUIRED ${_program})
     if(_test MATCHES "^test_dependency/")
       label_test(${_test} LABEL build BUILDS)
       continue()
     endif()
-    string(REGEX REPLACE "^[^/]*/([^.]*)\\..*" "\\1" _name ${_test})
     set(_label quick)
     if(_pickup_OPTIMISED)
       set(_label optimised)

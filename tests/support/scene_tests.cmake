@@ -19,11 +19,13 @@ function(add_scene_tests PROGRAM BOUND)
 
     foreach(_n 1 2 4)
       set(_test ${PROGRAM}/${_name})
+      set(_give_way ${GIVE_WAY})
       if(_n GREATER 1)
         set(_test ${_test}.mpirun=${_n})
+        set(_give_way)
       endif()
       add_test(NAME ${_test}
-        COMMAND sh ${CMAKE_SOURCE_DIR}/tests/support/scene.sh
+        COMMAND ${_give_way} sh ${CMAKE_SOURCE_DIR}/tests/support/scene.sh
           $<TARGET_FILE:${PROGRAM}>
           ${_scene}
           ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.output
@@ -40,12 +42,10 @@ function(add_scene_tests PROGRAM BOUND)
       endif()
       label_test(${_test} LABEL ${_label} PROCESSES ${_n})
       set_property(TEST ${_test} APPEND PROPERTY ENVIRONMENT PYTHON=${FRICTION_PYTHON})
-      # Those on several processes wait for those on one, which come before all others on
-      # one, see label_test(): so there is still something to run beside them.
+      # Those on several processes wait for those on one.
       if(_n EQUAL 1)
         set_tests_properties(${_test} PROPERTIES
-          FIXTURES_SETUP ${PROGRAM}.${_name}
-          COST 150)
+          FIXTURES_SETUP ${PROGRAM}.${_name})
       else()
         set_tests_properties(${_test} PROPERTIES
           FIXTURES_REQUIRED ${PROGRAM}.${_name})
