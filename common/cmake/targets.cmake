@@ -1,8 +1,10 @@
-# Targets that are set up alike: with deal.II's flags and headers, and with what
-# most files include, parsed beforehand.
+# Targets that are set up alike: with deal.II's flags and headers, and, in debug mode, with
+# what most files include, parsed beforehand. That takes a minute, of which three quarters
+# are spent on writing it, and as long as parsing it five times does: it pays for dozens of
+# tests, and not for the few files of release mode.
 option(FRICTION_PRECOMPILED_HEADERS
-  "Parse the headers of deal.II once and not in each file: a build in 60 % of the time, for 850 MB of disk"
-  ON)
+  "Parse the headers of deal.II once and not in each file, for 850 MB of disk"
+  ${FRICTION_ASSERTIONS})
 
 # friction_precompile(target library): the target takes the headers that were parsed
 # for the library. It has to be compiled with the same flags.

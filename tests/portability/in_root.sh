@@ -59,6 +59,7 @@ if [ -n "$tag" ]; then
   for mode in Debug Release; do
     cmake -S . -B build/headers-$mode -G Ninja -DCMAKE_BUILD_TYPE=$mode \
       -DDEAL_II_DIR=/dealii-build -DFRICTION_UNITY_BUILD=OFF \
+      -DFRICTION_PRECOMPILED_HEADERS=ON \
       >>configure.log 2>&1 || configured=no
     lists="$lists build/headers-$mode/compile_commands.json"
     # Not the one that the system has as well.
