@@ -1,7 +1,7 @@
 // What the certificate says of errors of a known size, in the units that it had
 // until version 0.2 and in those that it has: a table of doc/benchmark.
 //
-// Usage: benchmark-certificate-units ROOT DOFS [SCENE ...]
+// Usage: benchmark-certificate_units ROOT DOFS [SCENE ...]
 //
 // ROOT is that of the repository, DOFS about the size of the finest meshes.
 // Scenes are all that are shipped, or those named. Each is solved, and then
@@ -35,6 +35,8 @@
 
 #include <deal.II/grid/grid_tools.h>
 
+#include <tests/benchmarks/benchmark.h>
+
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -44,7 +46,7 @@
 #include <string>
 #include <vector>
 
-namespace
+namespace benchmark_certificate_units
 {
   using namespace dealii;
   using namespace Friction;
@@ -449,17 +451,15 @@ namespace
     std::fflush(stdout);
     return good;
   }
-} // namespace
+} // namespace benchmark_certificate_units
 
-int
-main(int argc, char *argv[])
+BENCHMARK(certificate_units)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   try
     {
       if (argc < 3)
         throw std::runtime_error(
-          "Usage: benchmark-certificate-units ROOT DOFS [SCENE ...]");
+          "Usage: benchmark-certificate_units ROOT DOFS [SCENE ...]");
       const std::string root = argv[1];
       const double      dofs = std::stod(argv[2]);
       const Entries     names(argv + 3, argv + argc);
@@ -492,4 +492,5 @@ main(int argc, char *argv[])
       std::cerr << error.what() << std::endl;
       return 1;
     }
+  return 0;
 }

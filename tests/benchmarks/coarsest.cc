@@ -11,6 +11,7 @@
 
 #include <deal.II/base/timer.h>
 
+#include <tests/benchmarks/benchmark.h>
 #include <tests/support/discretized.h>
 
 #include <cmath>
@@ -19,7 +20,7 @@
 #include <string>
 #include <vector>
 
-namespace Benchmark
+namespace benchmark_coarsest
 {
   using namespace Tests;
 
@@ -88,14 +89,12 @@ namespace Benchmark
       }
     std::fflush(stdout);
   }
-} // namespace Benchmark
+} // namespace benchmark_coarsest
 
 
 
-int
-main(int argc, char *argv[])
+BENCHMARK(coarsest)
 {
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   try
     {
       const std::string dimension = argc < 5 ? "" : argv[1];
@@ -111,13 +110,14 @@ main(int argc, char *argv[])
                   "   setup   solve  its cycles problem\n");
       for (int i = 4; i < argc; ++i)
         if (dimension == "2")
-          Benchmark::run<2>(argv[2], std::stoi(argv[i]), std::stod(argv[3]));
+          run<2>(argv[2], std::stoi(argv[i]), std::stod(argv[3]));
         else
-          Benchmark::run<3>(argv[2], std::stoi(argv[i]), std::stod(argv[3]));
+          run<3>(argv[2], std::stoi(argv[i]), std::stod(argv[3]));
     }
   catch (const std::exception &error)
     {
       std::cerr << error.what() << std::endl;
       return 1;
     }
+  return 0;
 }

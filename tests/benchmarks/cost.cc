@@ -15,6 +15,7 @@
 #include <deal.II/base/timer.h>
 #include <deal.II/base/utilities.h>
 
+#include <tests/benchmarks/benchmark.h>
 #include <tests/benchmarks/bonded.h>
 #include <tests/benchmarks/machine.h>
 #include <tests/support/discretized.h>
@@ -25,8 +26,9 @@
 #include <iostream>
 #include <vector>
 
-namespace Benchmark
+namespace benchmark_cost
 {
+  using namespace Benchmark;
   using namespace Tests;
 
   double
@@ -206,14 +208,12 @@ namespace Benchmark
       100. * sweep_bandwidth(d.problem(), nest.displacement(), nest.state()) /
         triad);
   }
-} // namespace Benchmark
+} // namespace benchmark_cost
 
 
 
-int
-main(int argc, char *argv[])
+BENCHMARK(cost)
 {
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   try
     {
       const std::string dimension = argc < 3 ? "" : argv[1];
@@ -226,13 +226,14 @@ main(int argc, char *argv[])
       const Friction::Parameters parameters = Friction::read_parameters(
         argv[2], std::vector<std::string>(argv + 3, argv + argc));
       if (dimension == "2")
-        Benchmark::run<2>(parameters);
+        run<2>(parameters);
       else
-        Benchmark::run<3>(parameters);
+        run<3>(parameters);
     }
   catch (const std::exception &error)
     {
       std::cerr << error.what() << std::endl;
       return 1;
     }
+  return 0;
 }

@@ -46,12 +46,14 @@
 #include <Teuchos_ParameterList.hpp>
 #include <ml_MultiLevelPreconditioner.h>
 
+#include <tests/benchmarks/benchmark.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
 #include <string>
 
-namespace Benchmark
+namespace benchmark_linear_program
 {
   using namespace dealii;
   using namespace Friction;
@@ -220,13 +222,11 @@ namespace Benchmark
         ml_seconds,
         cg_seconds);
   }
-} // namespace Benchmark
+} // namespace benchmark_linear_program
 
-int
-main(int argc, char **argv)
+BENCHMARK(linear_program)
 {
   using namespace dealii;
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   if (argc < 4)
     {
       std::cerr << "Usage: benchmark-linear_program 2|3 scene.prm refinements "
@@ -238,13 +238,14 @@ main(int argc, char **argv)
       const Friction::Parameters parameters =
         Friction::read_parameters(argv[2], {argv + 4, argv + argc});
       if (std::string(argv[1]) == "2")
-        Benchmark::run<2>(parameters, std::stoi(argv[3]));
+        run<2>(parameters, std::stoi(argv[3]));
       else
-        Benchmark::run<3>(parameters, std::stoi(argv[3]));
+        run<3>(parameters, std::stoi(argv[3]));
     }
   catch (const Friction::InputError &error)
     {
       std::cerr << error.what() << std::endl;
       return 2;
     }
+  return 0;
 }

@@ -5,7 +5,7 @@
 // from zero. Stresses, which are what this suite interpolates, begin much
 // closer. Beside them are the cycles of Algorithm 3 from the same starts.
 //
-// outer_start DIM SCENE [SECTION/ENTRY=VALUE ...]
+// Usage: benchmark-outer_start DIM SCENE [SECTION/ENTRY=VALUE ...]
 //
 // The scene has to ask for Algorithm 2. A row per mesh: its level, the degrees
 // of freedom, and those that there would be with one more node per cell, as in
@@ -20,15 +20,17 @@
 
 #include <common/algorithms/nested_iteration.h>
 
+#include <tests/benchmarks/benchmark.h>
+
 #include <array>
 #include <cmath>
 #include <iomanip>
 #include <iostream>
 
-using namespace Friction;
-
-namespace
+namespace benchmark_outer_start
 {
+  using namespace Friction;
+
   // Energy over Euclidean norm of the last of these many cycles.
   template <int dim>
   double
@@ -108,15 +110,14 @@ namespace
                   << std::fixed << std::setprecision(1) << norms << std::endl;
     } while (nest.advance());
   }
-} // namespace
+} // namespace benchmark_outer_start
 
-int
-main(int argc, char **argv)
+BENCHMARK(outer_start)
 {
-  Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   if (argc < 3)
     {
-      std::cerr << "outer_start DIM SCENE [SECTION/ENTRY=VALUE ...]\n";
+      std::cerr
+        << "Usage: benchmark-outer_start DIM SCENE [SECTION/ENTRY=VALUE ...]\n";
       return 2;
     }
   try
@@ -132,4 +133,5 @@ main(int argc, char **argv)
       std::cerr << error.what() << '\n';
       return 2;
     }
+  return 0;
 }

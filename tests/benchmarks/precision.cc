@@ -42,6 +42,7 @@
 #include <common/algorithms/nested_iteration.h>
 #include <common/estimate/exact_error.h>
 #include <common/output/level_records.h>
+#include <tests/benchmarks/benchmark.h>
 #include <tests/support/discretized.h>
 
 #include <array>
@@ -54,7 +55,7 @@
 #include <string>
 #include <vector>
 
-namespace Benchmark
+namespace benchmark_precision
 {
   using namespace Tests;
 
@@ -540,14 +541,12 @@ namespace Benchmark
     arguments = others;
     return options;
   }
-} // namespace Benchmark
+} // namespace benchmark_precision
 
 
 
-int
-main(int argc, char *argv[])
+BENCHMARK(precision)
 {
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   try
     {
       const std::string dimension = argc < 4 ? "" : argv[1];
@@ -562,12 +561,12 @@ main(int argc, char *argv[])
       if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
         throw Friction::InputError("This is measured on one process only.");
       std::vector<std::string> arguments(argv + 3, argv + argc);
-      const auto               options = Benchmark::take_options(arguments);
+      const auto               options = take_options(arguments);
       const auto parameters = Friction::read_parameters(argv[2], arguments);
       if (dimension == "2")
-        Benchmark::WorkAndPrecision<2>(parameters, options).run();
+        WorkAndPrecision<2>(parameters, options).run();
       else
-        Benchmark::WorkAndPrecision<3>(parameters, options).run();
+        WorkAndPrecision<3>(parameters, options).run();
     }
   catch (const Friction::InputError &error)
     {
@@ -579,4 +578,5 @@ main(int argc, char *argv[])
       std::cerr << error.what() << std::endl;
       return 1;
     }
+  return 0;
 }

@@ -17,6 +17,7 @@
 
 #include <deal.II/base/timer.h>
 
+#include <tests/benchmarks/benchmark.h>
 #include <tests/benchmarks/machine.h>
 
 #include <algorithm>
@@ -26,8 +27,9 @@
 #include <string>
 #include <vector>
 
-namespace Benchmark
+namespace benchmark_sweeps
 {
+  using namespace Benchmark;
   using namespace dealii;
   using namespace Friction;
 
@@ -268,14 +270,12 @@ namespace Benchmark
       }
     std::printf("\n");
   }
-} // namespace Benchmark
+} // namespace benchmark_sweeps
 
 
 
-int
-main(int argc, char *argv[])
+BENCHMARK(sweeps)
 {
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   try
     {
       const std::string dimension = argc < 3 ? "" : argv[1];
@@ -288,13 +288,14 @@ main(int argc, char *argv[])
       const Friction::Parameters parameters = Friction::read_parameters(
         argv[2], std::vector<std::string>(argv + 3, argv + argc));
       if (dimension == "2")
-        Benchmark::run<2>(parameters);
+        run<2>(parameters);
       else
-        Benchmark::run<3>(parameters);
+        run<3>(parameters);
     }
   catch (const std::exception &error)
     {
       std::cerr << error.what() << std::endl;
       return 1;
     }
+  return 0;
 }
