@@ -5,7 +5,7 @@
 
 Fails if the page of some prose is missing. Pages on files that have nothing but
 prose lead to the prose, titles become headings, and links that are wrong or lead
-nowhere are taken out."""
+nowhere are taken out, as is MathJax where there are no formulas."""
 
 import re
 import sys
@@ -78,6 +78,17 @@ def without_dead_links(folder):
                 page.write_text(text)
 
 
+def without_idle_mathjax(folder):
+    """Pages without formulas need not wait for MathJax."""
+    for page in folder.glob("*.html"):
+        text = page.read_text()
+        mended = re.sub(r'<script type="text/x-mathjax-config">.*?</script>\s*|'
+                        r'<script [^>]*src="[^"]*MathJax\.js"[^>]*></script>\s*', "", text,
+                        flags=re.S)
+        if mended != text and r"\(" not in mended and r"\[" not in mended:
+            page.write_text(mended)
+
+
 def main():
     folder = Path(sys.argv[1])
     missing = without_pages(folder)
@@ -88,6 +99,7 @@ def main():
     with_heading(folder)
     without_dead_links(folder)
     without_wrong_links(folder)
+    without_idle_mathjax(folder)
 
 
 if __name__ == "__main__":
