@@ -22,9 +22,11 @@ function(friction_executable target)
   friction_precompile(${target} friction)
 endfunction()
 
-# friction_step(name source): a step program.
+# friction_step(name source): a step program. LOADED is what runs in its place in tests, see
+# tests/support/load_once.cmake.
 function(friction_step name source)
   friction_executable(${name} ${source})
   set_target_properties(${name} PROPERTIES
-    RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+    RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin
+    LOADED ${CMAKE_BINARY_DIR}/bin/${name})
 endfunction()

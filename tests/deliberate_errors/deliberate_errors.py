@@ -116,7 +116,7 @@ def quick_tests(build, *options):
         result.stdout, re.MULTILINE)
     # What only builds is no test.
     outcome = [(name, how) for name, how in outcome
-               if not name.startswith(("build/", "test_dependency/"))]
+               if not name.startswith(("build/", "load/", "test_dependency/"))]
     # Tests of deal.II's kind are called after the build as well.
     return ([re.sub(r"\.debug$", "", name) for name, how in outcome
              if how not in ("Passed", "***Not Run", "***Skipped")], len(outcome))

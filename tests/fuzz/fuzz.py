@@ -4,7 +4,7 @@ programs: whatever they are, a run has to end with a result or with a sentence.
 Usage: fuzz.py PROGRAM_2D PROGRAM_3D SCENES_2D SCENES_3D FOUND
          [--seconds N] [--inputs N] [--seed N] [--timeout N]
          [--processes N ...] [--launcher 'MPIEXEC FLAG'] [--verify SCRIPT]
-         [--replay FOLDER] [--fork-server LIBRARY]
+         [--replay FOLDER]
 
 Inputs are tried for so many seconds, and as many inputs at most, on each of the numbers
 of PROCESSES, one after the other; on one process if none are given. Each input is made
@@ -58,8 +58,6 @@ import time
 from inputs import Input, read, times, write
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, os.path.join(os.path.dirname(HERE), 'support'))
-from started_program import NoArgument, StartedProgram  # noqa: E402
 ROOT = os.path.dirname(os.path.dirname(HERE))
 # Of each kind of finding.
 MOST_SAVED = 20
@@ -135,7 +133,6 @@ class Fuzzer:
         # Where MPI has files of its own.
         self.temporary = tempfile.mkdtemp()
         self.found = os.path.abspath(arguments.found)
-        self.started = {}
         self.n_processes = 1
         self.n_inputs = self.n_verified = 0
         self.script = arguments.verify and os.path.abspath(arguments.verify)
@@ -158,8 +155,6 @@ class Fuzzer:
         else:
             # Without a daemon, which would outlive the program.
             environment['OMPI_MCA_ess_singleton_isolated'] = '1'
-            if self.a.fork_server:
-                return self.run_started(dimension, arguments, environment)
         # Not pipes, which what is left of a run that was killed might hold open.
         with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
             try:
@@ -182,20 +177,6 @@ class Fuzzer:
                 file.seek(0)
                 texts.append(file.read(1000000).decode('utf-8', 'replace'))
         return (status, *texts)
-
-    def run_started(self, dimension, arguments, environment):
-        """The same by a program that is loaded once."""
-        if dimension not in self.started:
-            os.environ.update(environment)
-            self.started[dimension] = StartedProgram(
-                self.programs[dimension], self.a.fork_server, 'replace')
-        try:
-            done = self.started[dimension].run(arguments, self.a.timeout)
-        except NoArgument as error:
-            return (2, '', 'x: %s.' % error)
-        except subprocess.TimeoutExpired as ended:
-            return (None, ended.output, ended.stderr)
-        return (done.returncode, done.stdout, done.stderr)
 
     def message_problem(self, err):
         """What is wrong with how an input has been refused."""
@@ -457,7 +438,6 @@ if __name__ == '__main__':
     parser.add_argument('--inputs', type=int)
     parser.add_argument('--verify')
     parser.add_argument('--replay')
-    parser.add_argument('--fork-server')
     options = parser.parse_args()
     if max(options.processes) > 1 and not options.launcher:
         parser.error('several processes need a --launcher')
@@ -465,7 +445,5 @@ if __name__ == '__main__':
     try:
         status = fuzzer.main()
     finally:
-        for program in fuzzer.started.values():
-            program.close()
         shutil.rmtree(fuzzer.temporary, ignore_errors=True)
     sys.exit(status)

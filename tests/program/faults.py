@@ -4,7 +4,7 @@ result of a run that was left alone, or a sentence, and never anything else.
 
 Usage: faults.py PROGRAM SCENE SCENARIO ... [--tries N] [--processes N]
          [--mpiexec MPIEXEC] [--numproc-flag=FLAG] [--levels N] [--seed N]
-         [--entry SECTION/ENTRY=VALUE] ... [--fork-server LIBRARY]
+         [--entry SECTION/ENTRY=VALUE] ... [--loaded PROGRAM]
 
 Scenarios:
   damage  bits flipped, ends cut off, files emptied, removed and added in checkpoints
@@ -42,9 +42,6 @@ try:
     import numpy
 except ImportError:
     h5py = None
-
-sys.path.insert(0, str(Path(__file__).parent.parent / "support"))
-from started_program import StartedProgram  # noqa: E402
 
 CHECKPOINT = re.compile(r"checkpoint-(\d\d)")
 Result = collections.namedtuple("Result", "status out err")
@@ -86,20 +83,15 @@ class Faults:
         self.name = Path(options.program).name
         self.failures = 0
         self.wholes = {}
-        # For what runs to its end on one process, which has a folder of its own for
-        # MPI's files like all others, see start().
-        os.environ["TMPDIR"] = tempfile.mkdtemp(prefix="mpi-", dir=self.work)
-        self.started = options.fork_server and StartedProgram(
-            options.program, options.fork_server)
 
     # --- runs -----------------------------------------------------------------
 
-    def command(self, directory, *arguments, n=None, levels=None, checkpoint=True,
-                limited=False):
+    def command(self, directory, *arguments, program=None, n=None, levels=None,
+                checkpoint=True, limited=False):
         n = n or self.options.processes
         levels = self.options.levels if levels is None else levels
         ignoring = ["sh", "-c", "trap '' XFSZ; exec \"$0\" \"$@\""] if limited else []
-        words = [*ignoring, self.options.program, self.options.scene,
+        words = [*ignoring, program or self.options.program, self.options.scene,
                  f"Output/Directory={directory}", f"Refinement/Levels={levels}",
                  "Output/Times=false", *self.options.entry, *arguments]
         if checkpoint:
@@ -149,14 +141,10 @@ class Faults:
         return Result(process.returncode, *texts)
 
     def run(self, *arguments, **keywords):
-        n = keywords.get("n") or self.options.processes
-        if not self.started or n > 1 or "longest_file" in keywords:
-            return self.finish(self.start(*arguments, **keywords))
-        try:
-            result = self.started.run(self.command(*arguments, **keywords)[1:], 300)
-        except subprocess.TimeoutExpired as error:
-            raise Failure(f"it still runs after {error.timeout} seconds") from None
-        return Result(result.returncode, result.stdout, result.stderr)
+        """To its end, by a program that need not be loaded, if nothing is limited."""
+        if "longest_file" not in keywords:
+            keywords["program"] = self.options.loaded
+        return self.finish(self.start(*arguments, **keywords))
 
     def processes_in(self, directory):
         """Those of the program, without their launcher."""
@@ -711,10 +699,12 @@ def main():
     parser.add_argument("--levels", type=int, default=4)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--entry", action="append", default=[])
-    parser.add_argument("--fork-server", default="")
+    parser.add_argument("--loaded", metavar="PROGRAM", help="what runs in the place of the "
+                        "program where it is left alone")
     options = parser.parse_args()
     if "full" in options.scenarios:
         in_namespace()
+        options.loaded = None  # has not seen these mounts
 
     # Without a daemon for a single process, which would outlive it.
     if options.processes == 1:
@@ -730,8 +720,6 @@ def main():
                 print(f"FAILED  {scenario}: {failure}")
                 faults.failures += 1
     finally:
-        if faults.started:
-            faults.started.close()
         shutil.rmtree(faults.work, ignore_errors=True)
     return 0 if faults.failures == 0 else 1
 

@@ -2,7 +2,7 @@
 or solved with a warning, and nothing wrong is solved without a word. They are those of
 wrong_scenes.py, and some that take more than one run.
 
-Usage: wrong_input.py PROGRAM_2D PROGRAM_3D [FORK_SERVER]
+Usage: wrong_input.py PROGRAM_2D PROGRAM_3D
 """
 import math
 import os
@@ -11,10 +11,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)),
-                                os.pardir, 'support'))
-from started_program import StartedProgram
 
 from gmsh_writer import write_mesh
 from wrong_meshes import CELL, EDGES, SQUARE, make_meshes
@@ -40,7 +36,12 @@ class Runner:
                 f.write('subsection %s\n  set %s = %s\nend\n' % (section, name, value))
         if '--restart' not in options:
             shutil.rmtree('results', ignore_errors=True)
-        return self.programs[dimension].run(['scene.prm', *options])
+        return self.start(dimension, 'scene.prm', *options)
+
+    def start(self, dimension, *arguments):
+        return subprocess.run([self.programs[dimension], *arguments], timeout=120,
+                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True)
 
     def verdict(self, name, problems, result):
         print('%-8s%s' % ('FAILED' if problems else 'ok', name))
@@ -172,13 +173,13 @@ class Runner:
             text = f.read()
         with open('scene.prm', 'wb') as f:
             f.write(b'\xef\xbb\xbf' + text)
-        result = self.programs[2].run(['scene.prm', '--check'])
+        result = self.start(2, 'scene.prm', '--check')
         self.verdict('b: a scene with the mark of UTF-8',
                      ['exit status'] if result.returncode else [], result)
         if os.path.exists('/dev/full'):
             for arguments in ['scene.prm'], ['--help']:
                 with open('/dev/full', 'w') as full:
-                    result = subprocess.run([self.programs[2].program, *arguments],
+                    result = subprocess.run([self.programs[2], *arguments],
                                             stdout=full, stderr=subprocess.PIPE,
                                             universal_newlines=True)
                 result.stdout = ''
@@ -210,7 +211,7 @@ def main():
     # Each program is on one process, and need not start a daemon for others; without
     # one, programs of other tests would have the same directory for their files.
     os.environ['OMPI_MCA_ess_singleton_isolated'] = '1'
-    programs = {dimension: StartedProgram(os.path.abspath(program), *sys.argv[3:])
+    programs = {dimension: os.path.abspath(program)
                 for dimension, program in zip((2, 3), sys.argv[1:])}
     runner = Runner(programs)
     work = tempfile.mkdtemp()
@@ -227,8 +228,6 @@ def main():
         runner.check_check()
         runner.check_streams()
     finally:
-        for program in programs.values():
-            program.close()
         os.chdir('/')
         shutil.rmtree(work)
     print('%d failed' % runner.failures)

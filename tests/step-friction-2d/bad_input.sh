@@ -2,12 +2,11 @@
 # The step program on input that is wrong, or too much for it: each case ends
 # with a status other than 0 and one sentence, and leaves no file behind.
 #
-# Usage: bad_input.sh PROGRAM SCENES MPIEXEC NUMPROC_FLAG [FORK_SERVER]
+# Usage: bad_input.sh PROGRAM SCENES MPIEXEC NUMPROC_FLAG
 program=$1
 scenes=$2
 mpiexec=$3
 numproc_flag=$4
-server=$5
 
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
@@ -35,23 +34,11 @@ verdict()
   fi
 }
 
-# With a fork server (tests/support/fork_server.cc) the program is loaded once.
-if [ -n "$server" ]; then
-  mkfifo requests answers
-  LD_PRELOAD=$server "$program" <requests >answers &
-  exec 3>requests 4<answers
-fi
-
 # start ARGUMENTS...: of the program.
 start()
 {
-  if [ -n "$server" ]; then
-    printf '%s\0' $(($# + 4)) "$work" stdout stderr "$program" "$@" >&3
-    read -r status <&4
-  else
-    "$program" "$@" >stdout 2>stderr </dev/null
-    status=$?
-  fi
+  "$program" "$@" >stdout 2>stderr </dev/null
+  status=$?
 }
 
 # run SCENE OVERRIDES...: with a fresh output directory.
@@ -179,7 +166,7 @@ expect_sentence 'a directory of 10 MB' 'cannot be created'
 printf 'set \033[31mred\007 \377\302\233 = 1\n' >binary.prm
 quoted 'bytes that are no text' \
   'entry .\\x1b\[31mred\\x07 \\xff\\xc2\\x9b.; did' binary.prm
-head -c 100000 "$program" >binary.prm
+head -c 100000 "$(command -v sh)" >binary.prm
 quoted 'a file that is no text' 'binary.prm' binary.prm
 quoted 'an argument that is no text' 'override .\\x1b\[2Jx' "$block" \
   "$(printf '\033[2Jx')"
@@ -210,7 +197,6 @@ full()
     trap '' XFSZ
     # Open MPI's shared memory is a file, too, and longer than that.
     export OMPI_MCA_btl=self
-    server= # whose copies would have neither
     ulimit -f "$1"
     shift
     run "$@"
@@ -357,6 +343,4 @@ if [ -n "$mpiexec" ]; then
     Refinement/Levels=0
 fi
 
-# The server ends with its input.
-exec 3>&-
 [ $failures -eq 0 ]

@@ -2,19 +2,21 @@
 # A run that is killed again and again, and continued: no file is damaged in
 # between, and in the end table and files are those of a run that was left alone.
 #
-# Usage: restart.sh PROGRAM SCENE LAST_LEVEL BOUND N [MPIEXEC NUMPROC_FLAG]
+# Usage: restart.sh PROGRAM LOADED SCENE LAST_LEVEL BOUND N [MPIEXEC NUMPROC_FLAG]
 #
-# BOUND: by how much the number of cycles on a level may differ. N: number of
-# processes; without MPIEXEC, or for N = 1, the program is called directly. In the
-# environment OVERRIDE may have an entry that is to be different in the scene, and
-# TOLERANCE to how many digits histories are to agree then.
+# LOADED: what runs in the place of the program where it is left alone. BOUND: by how
+# much the number of cycles on a level may differ. N: number of processes; without MPIEXEC,
+# or for N = 1, the program is called directly. In the environment OVERRIDE may have an
+# entry that is to be different in the scene, and TOLERANCE to how many digits histories
+# are to agree then.
 program=$1
-scene=$2
-last=$3
-bound=$4
-n=$5
-mpiexec=$6
-numproc_flag=$7
+loaded=$2
+scene=$3
+last=$4
+bound=$5
+n=$6
+mpiexec=$7
+numproc_flag=$8
 tests=$(cd "$(dirname "$0")/.." && pwd)
 
 work=$(mktemp -d) || exit 1
@@ -49,13 +51,20 @@ verdict()
   fi
 }
 
-# run PROCESSES DIRECTORY ARGUMENTS...: until it ends or is killed.
+# run PROCESSES DIRECTORY ARGUMENTS...: until it ends.
 run()
 {
-  processes=$1
-  directory=$2
-  shift 2
-  set -- "$program" "$scene" "Output/Directory=$directory" \
+  run_program "$loaded" "$@"
+}
+
+# run_program PROGRAM PROCESSES DIRECTORY ARGUMENTS...: until it ends or is killed.
+run_program()
+{
+  executable=$1
+  processes=$2
+  directory=$3
+  shift 3
+  set -- "$executable" "$scene" "Output/Directory=$directory" \
     Output/Checkpoint=true Output/Format=hdf5 Output/Times=false \
     Output/Verification=true \
     ${OVERRIDE:+"$OVERRIDE"} "$@"
@@ -133,7 +142,7 @@ while [ "$kills" -eq 0 ] || [ "$level" -lt "$last" ]; do
   processes=$n
   # Once with fewer processes.
   [ "$kills" -eq 1 ] && processes=$(((n + 1) / 2))
-  run "$processes" "$work/killed" "Refinement/Levels=$last" $restart &
+  run_program "$program" "$processes" "$work/killed" "Refinement/Levels=$last" $restart &
   launched=$!
   while kill -0 $launched 2>/dev/null &&
     [ ! -d "killed/checkpoint-0$level" ]; do

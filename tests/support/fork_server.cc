@@ -1,26 +1,31 @@
-// To be loaded before a program (LD_PRELOAD) that is run hundreds of times: it
-// takes several times as long to load deal.II's two hundred libraries, and to
-// find symbols in them, as to see that an entry of a scene is wrong. So the
-// program is loaded once, and stops before its main(). For each request that it
-// then reads, it makes a copy of itself, which has everything that a program
-// has that begins, and calls main().
+// To be loaded before a program (LD_PRELOAD) that is run many times: it takes
+// several times as long to load deal.II's two hundred libraries, and to find
+// symbols in them, as to run a scene on a small mesh. So the program is loaded
+// once, and stops before its main(). Whenever fork_client.cc asks for it, it
+// makes a copy of itself, which has everything that a program has that begins,
+// and calls main(). fork_server.sh starts it.
 //
-// A request, on standard input, is a number of strings, and these, with a zero
-// at the end of each: the directory to be in, files for standard output and
-// standard error, and the arguments of the program with its name. The answer, a
-// line on standard output, is the status of the copy, or minus the signal that
-// has ended it. started_program.py asks.
+// The copy has what the client has: arguments, environment, standard input,
+// output and error, directory, limits, ignored signals, processors and
+// priority. What libraries have read in the environment when they were loaded,
+// like the number of threads, is the server's. Signals are passed on, and if
+// the client is killed, so is the copy. In the environment of the server
+// FORK_SERVER_PARENT is the number of a process: when that has ended, the
+// server starts nothing any more, and ends.
 
+#include <sys/prctl.h>
+#include <sys/signalfd.h>
 #include <sys/wait.h>
 
-#include <dlfcn.h>
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cstdio>
 #include <cstdlib>
-#include <string>
+#include <map>
 #include <vector>
+
+#include <dlfcn.h>
+#include <poll.h>
+#include <tests/support/fork_request.h>
+
+extern char **environ;
 
 namespace
 {
@@ -30,74 +35,192 @@ namespace
 
 
 
-  bool
-  read_string(std::string &text)
+  class Server
   {
-    text.clear();
-    int c;
-    while ((c = std::getc(stdin)) != EOF)
-      if (c == 0)
-        return true;
+  public:
+    Server(const char *name, const pid_t parent)
+      : parent(parent)
+      , listening(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0))
+    {
+      const sockaddr_un address = Fork::address_of(name);
+      sigemptyset(&child_ends);
+      sigaddset(&child_ends, SIGCHLD);
+      sigprocmask(SIG_BLOCK, &child_ends, nullptr);
+      ended = signalfd(-1, &child_ends, SFD_CLOEXEC | SFD_NONBLOCK);
+      works = bind(listening,
+                   reinterpret_cast<const sockaddr *>(&address),
+                   sizeof(address)) == 0 &&
+        listen(listening, 100) == 0 && ended >= 0;
+    }
+
+    int
+    serve()
+    {
+      while (works && (is_wanted() || !clients.empty()))
+        {
+          std::vector<pollfd> events{{listening, POLLIN, 0},
+                                     {ended, POLLIN, 0}};
+          for (const auto &copy : clients)
+            events.push_back({copy.second, POLLIN, 0});
+          if (poll(events.data(), events.size(), 1000) < 0 && errno != EINTR)
+            return 1;
+          auto event = events.begin() + 2;
+          for (const auto &copy : clients)
+            if ((event++)->revents != 0)
+              pass_on(copy.first, copy.second);
+          answer();
+          if (events[0].revents & POLLIN)
+            accept();
+        }
+      return works ? 0 : 1;
+    }
+
+  private:
+    pid_t                parent;
+    int                  listening, ended;
+    bool                 works;
+    sigset_t             child_ends;
+    std::map<pid_t, int> clients;
+
+    bool
+    is_wanted() const
+    {
+      return kill(parent, 0) == 0;
+    }
+
+    // A signal, or, of a client that has been killed, what has killed it.
+    static void
+    pass_on(const pid_t copy, const int client)
+    {
+      int signal;
+      kill(copy,
+           Fork::receive(client, &signal, sizeof(signal)) ? signal : SIGKILL);
+    }
+
+    // To clients whose copies have ended.
+    void
+    answer()
+    {
+      signalfd_siginfo ignored;
+      while (read(ended, &ignored, sizeof(ignored)) > 0)
+        ;
+      int   status;
+      pid_t copy;
+      while ((copy = waitpid(-1, &status, WNOHANG)) > 0)
+        {
+          Fork::send(clients[copy], &status, sizeof(status));
+          close(clients[copy]);
+          clients.erase(copy);
+        }
+    }
+
+    void
+    accept()
+    {
+      const int client = accept4(listening, nullptr, nullptr, SOCK_CLOEXEC);
+      if (client < 0)
+        return;
+      // One that has been stopped has not all others wait.
+      const timeval patience{10, 0};
+      setsockopt(client, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof(patience));
+      Fork::Request request;
+      Fork::Files   files{{-1, -1, -1, -1}};
+      std::string   bytes;
+      pid_t         copy = -1;
+      if (receive(client, request, files, bytes) && is_wanted())
+        {
+          copy = fork();
+          if (copy == 0)
+            run(client, request, files, bytes);
+        }
+      for (const int file : files)
+        if (file >= 0)
+          close(file);
+      if (copy > 0)
+        clients[copy] = client;
       else
-        text += char(c);
-    return false;
-  }
+        {
+          Fork::send(client, &Fork::NOT_STARTED, sizeof(int));
+          close(client);
+        }
+    }
 
+    static bool
+    receive(const int      client,
+            Fork::Request &request,
+            Fork::Files   &files,
+            std::string   &bytes)
+    {
+      alignas(cmsghdr) char control[CMSG_SPACE(sizeof(files))];
+      iovec                 data{&request, sizeof(request)};
+      msghdr                message{};
+      message.msg_iov        = &data;
+      message.msg_iovlen     = 1;
+      message.msg_control    = control;
+      message.msg_controllen = sizeof(control);
+      const ssize_t  n       = recvmsg(client, &message, MSG_WAITALL);
+      const cmsghdr *header  = n > 0 ? CMSG_FIRSTHDR(&message) : nullptr;
+      if (header == nullptr || header->cmsg_len != CMSG_LEN(sizeof(files)))
+        return false;
+      std::memcpy(files.data(), CMSG_DATA(header), sizeof(files));
+      if (n != ssize_t(sizeof(request)))
+        return false;
+      bytes.resize(request.n_bytes);
+      return Fork::receive(client, &bytes[0], bytes.size());
+    }
 
+    // In the copy.
+    [[noreturn]] void
+    run(const int            client,
+        const Fork::Request &request,
+        const Fork::Files   &files,
+        std::string         &bytes) const
+    {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      sigprocmask(SIG_UNBLOCK, &child_ends, nullptr);
+      if (fchdir(files[3]) != 0)
+        _exit(126);
+      for (int i = 0; i < 3; ++i)
+        dup2(files[i], i);
+      for (const int file : files)
+        close(file);
+      for (const int file : {client, listening, ended})
+        close(file);
+      for (const auto &other : clients)
+        close(other.second);
+      umask(request.umask);
+      setpriority(PRIO_PROCESS, 0, request.nice);
+      sched_setaffinity(0, sizeof(request.processors), &request.processors);
+      for (int i = 0; i < int(RLIM_NLIMITS); ++i)
+        setrlimit(decltype(RLIMIT_CPU)(i), &request.limits[i]);
+      for (int i = 1; i < NSIG; ++i)
+        if (Fork::is_ignored(i) != request.is_ignored[i])
+          std::signal(i, request.is_ignored[i] ? SIG_IGN : SIG_DFL);
 
-  void
-  open_as(const int descriptor, const char *file, const int mode)
-  {
-    const int opened = open(file, mode, 0666);
-    if (opened < 0 || dup2(opened, descriptor) < 0)
-      _exit(126);
-    close(opened);
-  }
-
-
-
-  [[noreturn]] void
-  run(std::vector<std::string> &words, char **environment)
-  {
-    constexpr int create = O_WRONLY | O_CREAT | O_TRUNC;
-    if (chdir(words[0].c_str()) != 0)
-      _exit(126);
-    open_as(STDIN_FILENO, "/dev/null", O_RDONLY);
-    open_as(STDOUT_FILENO, words[1].c_str(), create);
-    open_as(STDERR_FILENO, words[2].c_str(), create);
-    std::vector<char *> arguments;
-    for (std::size_t i = 3; i < words.size(); ++i)
-      arguments.push_back(&words[i][0]);
-    arguments.push_back(nullptr);
-    std::exit(program(int(words.size()) - 3, arguments.data(), environment));
-  }
+      std::vector<char *> arguments, variables;
+      for (std::size_t at = 0; at < bytes.size();
+           at += std::strlen(&bytes[at]) + 1)
+        (arguments.size() < request.n_arguments ? arguments : variables)
+          .push_back(&bytes[at]);
+      arguments.push_back(nullptr);
+      variables.push_back(nullptr);
+      environ = variables.data();
+      std::exit(program(int(request.n_arguments), arguments.data(), environ));
+    }
+  };
 
 
 
   int
-  serve(int, char **, char **environment)
+  serve(int, char **arguments, char **)
   {
-    unsetenv("LD_PRELOAD"); // not for what the program starts
-    std::string text;
-    while (read_string(text))
-      {
-        std::vector<std::string> words(std::stoul(text));
-        for (std::string &word : words)
-          if (!read_string(word))
-            return 1;
-        const pid_t child = fork();
-        if (child < 0)
-          return 1;
-        if (child == 0)
-          run(words, environment);
-        int status = 0;
-        if (waitpid(child, &status, 0) != child)
-          return 1;
-        std::printf(
-          "%d\n", WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status));
-        std::fflush(stdout);
-      }
-    return 0;
+    // What has started it may be interrupted, or wait for files. Not a session
+    // of its own: in that priorities would only count among its copies.
+    setpgid(0, 0);
+    for (int file = 3; file < 1024; ++file)
+      close(file);
+    const char *parent = std::getenv("FORK_SERVER_PARENT");
+    return parent ? Server(arguments[0], std::atoi(parent)).serve() : 1;
   }
 } // namespace
 

@@ -81,7 +81,7 @@ function(label_test name)
     ${FRICTION_MPI_ENVIRONMENT})
   needs_processes(${name} ${_test_PROCESSES})
   if(_test_BUILDS AND
-      (name MATCHES "^build/" OR NOT CMAKE_GENERATOR MATCHES "Makefiles"))
+      (name MATCHES "^(build|load)/" OR NOT CMAKE_GENERATOR MATCHES "Makefiles"))
     set_property(TEST ${name} APPEND PROPERTY RESOURCE_LOCK build_tree)
   endif()
   # What takes long and one processor begins early, or it would have the other
@@ -118,6 +118,21 @@ function(friction_test_program target)
   add_dependencies(tests-quick ${target})
 endfunction()
 
+# add_build_test(name target [LOADS]): a test that makes a program, and loads it, before
+# those that need it.
+function(add_build_test name target)
+  set(_load)
+  if(ARGN AND FORK_SERVER)
+    set(_load ${FORK_SERVER} $<TARGET_FILE:${target}>)
+    add_dependencies(${target} fork-client fork-server)
+  endif()
+  add_test(NAME ${name}
+    COMMAND ${_load}
+      ${CMAKE_COMMAND} --build ${CMAKE_BINARY_DIR} --target ${target} --parallel 2)
+  label_test(${name} LABEL build BUILDS)
+  set_tests_properties(${name} PROPERTIES TIMEOUT 3600 COST 1000)
+endfunction()
+
 # friction_study_program(target source ...): one that studies need, in release mode.
 function(friction_study_program target)
   friction_executable(${target} ${ARGN})
@@ -125,15 +140,18 @@ function(friction_study_program target)
   add_dependencies(tests-optimised ${target})
 endfunction()
 
-# friction_tests_program(target source ...): one that runs tests of deal.II's kind, each
-# by its name, see test.h. In debug mode it is built with all others, otherwise when a
+# friction_tests_program(target [ALONE] source ...): one that runs tests of deal.II's kind,
+# each by its name, see test.h. In debug mode it is built with all others, otherwise when a
 # test wants it. deal.II's macro makes a program for each test, unless it is there: here
 # it is, as a file. A test of its own, build/<target>, makes the file, or sees that it is up
 # to date, before all others that need it: make takes half a second for that, as long as many
-# of them. deal.II's targets <test>.test, called by hand, do not. For pickup_tests(), which
-# says what the category is.
+# of them. If the program is not alone, it also loads it, see load_once.cmake. deal.II's
+# targets <test>.test, called by hand, do not make the program. For pickup_tests(), which says
+# what the category is.
 function(friction_tests_program target)
-  friction_executable(${target} ${ARGN})
+  cmake_parse_arguments(_test "ALONE" "" "" ${ARGN})
+  set(_sources ${_test_UNPARSED_ARGUMENTS})
+  friction_executable(${target} ${_sources})
   target_link_libraries(${target} test-main ${TEST_LIBRARIES})
   target_compile_definitions(${target} PRIVATE SOURCE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
   set_target_properties(${target} PROPERTIES
@@ -142,20 +160,19 @@ function(friction_tests_program target)
     UNITY_BUILD_BATCH_SIZE 8)
   only_for_tests(${target})
   string(TOLOWER ${CMAKE_BUILD_TYPE} _mode)
-  foreach(_source ${ARGN})
+  foreach(_source ${_sources})
     string(REPLACE ".cc" "" _name ${_source})
     set(_program ${_category}.${_name}.${_mode})
     add_executable(${_program} IMPORTED)
     set_target_properties(${_program} PROPERTIES
       IMPORTED_LOCATION ${CMAKE_CURRENT_BINARY_DIR}/${target})
   endforeach()
-  add_test(NAME build/${target}
-    COMMAND ${CMAKE_COMMAND} --build ${CMAKE_BINARY_DIR} --target ${target} --parallel 2)
-  label_test(build/${target} LABEL build BUILDS)
-  set_tests_properties(build/${target} PROPERTIES
-    FIXTURES_SETUP ${target}
-    TIMEOUT 3600
-    COST 1000)
+  if(_test_ALONE)
+    add_build_test(build/${target} ${target})
+  else()
+    add_build_test(build/${target} ${target} LOADS)
+  endif()
+  set_tests_properties(build/${target} PROPERTIES FIXTURES_SETUP ${target})
 endfunction()
 
 # pickup_tests([OPTIMISED] [FULL name ...] [ALONE name ...]): deal.II's tests of a folder,
@@ -176,14 +193,15 @@ function(pickup_tests)
   set(_sources)
   set(_programs ${_category}-tests)
   foreach(_name ${_outputs})
-    set(${_category}_${_name}_RUNARGS_PREFIX
-      ${GIVE_WAY} env FRICTION_TEST=${_name})
+    set(_prefix ${GIVE_WAY} env FRICTION_TEST=${_name})
     if(_name IN_LIST _pickup_ALONE)
-      friction_tests_program(${_category}-${_name} ${_name}.cc)
+      friction_tests_program(${_category}-${_name} ALONE ${_name}.cc)
       list(APPEND _programs ${_category}-${_name})
     else()
       list(APPEND _sources ${_name}.cc)
+      list(APPEND _prefix ${FORK_CLIENT})
     endif()
+    set(${_category}_${_name}_RUNARGS_PREFIX ${_prefix})
   endforeach()
   friction_tests_program(${_category}-tests ${_sources})
   # deal.II's macro pads the category, for its messages.
@@ -199,11 +217,9 @@ function(pickup_tests)
     if(_labels)
       continue()
     endif()
-    string(REGEX REPLACE "^[^/]*/([^.]*)\\..*" "\\1" _name ${_test})
-    # Since 9.5 deal.II builds a program that several tests need in a test of its own.
-    if(_test MATCHES "^test_dependency/")
-      string(REGEX REPLACE "^test_dependency/[^.]*\\.([^.]*)\\..*" "\\1" _name ${_test})
-    endif()
+    # Since 9.5 deal.II builds a program that several tests need in a test of its own,
+    # test_dependency/<folder>.<test>.<mode>; others are <folder>/<test>.<mode>.
+    string(REGEX REPLACE "^(test_dependency/[^.]*\\.|[^/]*/)([^.]*)\\..*" "\\2" _name ${_test})
     set(_program ${_folder}-tests)
     if(_name IN_LIST _pickup_ALONE)
       set(_program ${_folder}-${_name})

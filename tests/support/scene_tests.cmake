@@ -26,7 +26,7 @@ function(add_scene_tests PROGRAM BOUND)
       endif()
       add_test(NAME ${_test}
         COMMAND ${_give_way} sh ${CMAKE_SOURCE_DIR}/tests/support/scene.sh
-          $<TARGET_FILE:${PROGRAM}>
+          ${LOADED_${PROGRAM}}
           ${_scene}
           ${CMAKE_CURRENT_SOURCE_DIR}/${_name}.output
           ${CMAKE_CURRENT_BINARY_DIR}/${_name}
@@ -41,14 +41,15 @@ function(add_scene_tests PROGRAM BOUND)
         set(_label full)
       endif()
       label_test(${_test} LABEL ${_label} PROCESSES ${_n})
+      runs_loaded(${_test} ${PROGRAM})
       set_property(TEST ${_test} APPEND PROPERTY ENVIRONMENT PYTHON=${FRICTION_PYTHON})
       # Those on several processes wait for those on one.
       if(_n EQUAL 1)
         set_tests_properties(${_test} PROPERTIES
           FIXTURES_SETUP ${PROGRAM}.${_name})
       else()
-        set_tests_properties(${_test} PROPERTIES
-          FIXTURES_REQUIRED ${PROGRAM}.${_name})
+        set_property(TEST ${_test} APPEND PROPERTY FIXTURES_REQUIRED
+          ${PROGRAM}.${_name})
       endif()
     endforeach()
 
