@@ -28,13 +28,7 @@ failures=0
 ulimit -f 1000000
 
 # Some python that can read what we write; without one, files are not looked at.
-python=
-for candidate in python3 /usr/bin/python3; do
-  if "$candidate" -c 'import h5py, numpy' 2>/dev/null; then
-    python=$candidate
-    break
-  fi
-done
+python=$(sh "$tests/support/find_python.sh")
 
 # verdict NAME PROBLEM: an empty problem is none.
 verdict()

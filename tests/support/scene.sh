@@ -12,8 +12,7 @@
 # Usage: scene.sh PROGRAM SCENE EXPECTED RESULTS N CYCLES NUMDIFF COMPARE MPIEXEC \
 #          NUMPROC_FLAG [OVERRIDES...]
 #
-# PYTHON in the environment is one that can read what has been written; otherwise one is
-# looked for.
+# PYTHON in the environment: see find_python.sh.
 program=$1
 scene=$2
 expected=$3
@@ -93,10 +92,8 @@ if [ "$n" -ne 1 ]; then
   on_one_process "$compare" "$alone/history.h5" "$results/history.h5" "$n" || exit 1
 fi
 
-for python in $PYTHON python3 /usr/bin/python3 none; do
-  [ "$python" = "$PYTHON" ] || "$python" -c 'import h5py, numpy' 2>/dev/null && break
-done
-if [ "$python" = none ]; then
+python=$(sh "$(dirname "$0")/find_python.sh")
+if [ -z "$python" ]; then
   echo "not verified: there is no python3 with h5py"
 else
   "$python" -B "$(dirname "$0")/../verify/friction_verify.py" "$results" || exit 1
