@@ -1,3 +1,4 @@
+#include <common/discretization/multilinear_cell.h>
 #include <common/discretization/volumetric_strain.h>
 
 #include <deal.II/base/quadrature_lib.h>
@@ -43,42 +44,31 @@ namespace Friction
 
     // Both body and displacement are linear in each coordinate of the unit
     // cell, so that two points per direction, all of the same weight, integrate
-    // Jacobian and divergence exactly. FEValues would take several times as
-    // long.
-    constexpr unsigned int n_corners = GeometryInfo<dim>::vertices_per_cell;
-    const QGauss<dim>      quadrature(2);
-    std::vector<std::array<Tensor<1, dim>, n_corners>> shape_gradients;
-    for (const Point<dim> &point : quadrature.get_points())
-      {
-        shape_gradients.emplace_back();
-        for (unsigned int v = 0; v < n_corners; ++v)
-          shape_gradients.back()[v] =
-            GeometryInfo<dim>::d_linear_shape_function_gradient(point, v);
-      }
+    // Jacobian and divergence exactly.
+    using CellValues = Multilinear::CellValues<dim>;
+    const QGauss<dim> quadrature(2);
     Assert(dof_handler.get_fe().degree == 1, ExcNotImplemented());
     means.resize(dof_handler.get_triangulation().n_active_cells());
-    std::array<Tensor<1, dim>, n_corners> values;
+    std::array<typename CellValues::Values, CellValues::n_corners> corners;
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (!cell->is_artificial() &&
           materials.of(cell).volumetric_strain() == VolumetricStrain::mean)
         {
           const auto vertices = mapping.get_vertices(cell);
-          for (unsigned int v = 0; v < n_corners; ++v)
+          for (unsigned int v = 0; v < CellValues::n_corners; ++v)
             for (unsigned int c = 0; c < dim; ++c)
-              values[v][c] = displacement(cell->vertex_dof_index(v, c));
-          double volume = 0., integral = 0.;
-          for (const auto &gradients : shape_gradients)
+              {
+                corners[v][c] = vertices[v][c];
+                corners[v][dim + c] =
+                  displacement(cell->vertex_dof_index(v, c));
+              }
+          const CellValues values(corners);
+          double           volume = 0., integral = 0.;
+          for (const Point<dim> &p : quadrature.get_points())
             {
-              Tensor<2, dim> jacobian, gradient;
-              for (unsigned int v = 0; v < n_corners; ++v)
-                for (unsigned int d = 0; d < dim; ++d)
-                  {
-                    jacobian[d] += vertices[v][d] * gradients[v];
-                    gradient[d] += values[v][d] * gradients[v];
-                  }
-              const double determinant_here = determinant(jacobian);
-              volume += determinant_here;
-              integral += trace(gradient * invert(jacobian)) * determinant_here;
+              const Multilinear::PointOfCell<dim> here(values, p);
+              volume += here.determinant;
+              integral += trace(here.gradient) * here.determinant;
             }
           means[cell->active_cell_index()] = integral / volume;
         }

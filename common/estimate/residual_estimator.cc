@@ -1,6 +1,6 @@
 #include <common/compatibility.h>
+#include <common/discretization/multilinear_cell.h>
 #include <common/discretization/volumetric_strain.h>
-#include <common/estimate/multilinear_cell.h>
 #include <common/estimate/residual_estimator.h>
 #include <common/parallel/collective_error.h>
 

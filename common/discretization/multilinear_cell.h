@@ -1,5 +1,5 @@
-#ifndef friction_estimate_multilinear_cell_h
-#define friction_estimate_multilinear_cell_h
+#ifndef friction_discretization_multilinear_cell_h
+#define friction_discretization_multilinear_cell_h
 
 #include <deal.II/base/geometry_info.h>
 #include <deal.II/base/point.h>
