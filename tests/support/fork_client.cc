@@ -53,20 +53,14 @@ namespace
     for (int i = 1; i < NSIG; ++i)
       request.is_ignored[i] = Fork::is_ignored(i);
 
-    const Fork::Files     files{{0, 1, 2, directory}};
-    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(files))] = {};
-    iovec                 data{&request, sizeof(request)};
-    msghdr                message{};
-    message.msg_iov        = &data;
-    message.msg_iovlen     = 1;
-    message.msg_control    = control;
-    message.msg_controllen = sizeof(control);
-    cmsghdr *header        = CMSG_FIRSTHDR(&message);
-    header->cmsg_level     = SOL_SOCKET;
-    header->cmsg_type      = SCM_RIGHTS;
-    header->cmsg_len       = CMSG_LEN(sizeof(files));
+    const Fork::Files files{{0, 1, 2, directory}};
+    Fork::Message     message(request);
+    cmsghdr          *header = CMSG_FIRSTHDR(&message.header);
+    header->cmsg_level       = SOL_SOCKET;
+    header->cmsg_type        = SCM_RIGHTS;
+    header->cmsg_len         = CMSG_LEN(sizeof(files));
     std::memcpy(CMSG_DATA(header), files.data(), sizeof(files));
-    return sendmsg(server, &message, MSG_NOSIGNAL) ==
+    return sendmsg(server, &message.header, MSG_NOSIGNAL) ==
       ssize_t(sizeof(request)) &&
       Fork::send(server, bytes.data(), bytes.size());
   }

@@ -44,6 +44,27 @@ namespace Fork
 
 
 
+  // What sendmsg() and recvmsg() take: a Request, and room for Files.
+  struct Message
+  {
+    explicit Message(Request &request)
+      : data{&request, sizeof(request)}
+    {
+      header.msg_iov        = &data;
+      header.msg_iovlen     = 1;
+      header.msg_control    = control;
+      header.msg_controllen = sizeof(control);
+    }
+
+    Message(const Message &) = delete;
+
+    msghdr header{};
+    iovec  data;
+    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(Files))] = {};
+  };
+
+
+
   // The socket of a program that is in the directory where one is: the names of
   // sockets must not have more than a hundred characters.
   inline sockaddr_un

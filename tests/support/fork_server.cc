@@ -151,15 +151,9 @@ namespace
             Fork::Files   &files,
             std::string   &bytes)
     {
-      alignas(cmsghdr) char control[CMSG_SPACE(sizeof(files))];
-      iovec                 data{&request, sizeof(request)};
-      msghdr                message{};
-      message.msg_iov        = &data;
-      message.msg_iovlen     = 1;
-      message.msg_control    = control;
-      message.msg_controllen = sizeof(control);
-      const ssize_t  n       = recvmsg(client, &message, MSG_WAITALL);
-      const cmsghdr *header  = n > 0 ? CMSG_FIRSTHDR(&message) : nullptr;
+      Fork::Message  message(request);
+      const ssize_t  n      = recvmsg(client, &message.header, MSG_WAITALL);
+      const cmsghdr *header = n > 0 ? CMSG_FIRSTHDR(&message.header) : nullptr;
       if (header == nullptr || header->cmsg_len != CMSG_LEN(sizeof(files)))
         return false;
       std::memcpy(files.data(), CMSG_DATA(header), sizeof(files));
