@@ -92,6 +92,7 @@ namespace Friction
     };
 
 
+
     // The components of a symmetric tensor, in the order of VTK.
     constexpr unsigned int                    n_stresses   = 6;
     const std::array<std::string, n_stresses> stress_names = {{"stress_xx",

@@ -62,7 +62,7 @@ endfunction()
 # label_test(name LABEL label [PROCESSES n] [BUILDS]): a test that was added already. Its
 # folder is the part of its name before the first slash. On more than two processes it is
 # never quick. If it builds something in this tree, only make can do so several times at
-# once, and not even make what others want as well, like the library.
+# once.
 function(label_test name)
   cmake_parse_arguments(_test "BUILDS" "LABEL;PROCESSES" "" ${ARGN})
   if(NOT _test_PROCESSES)
@@ -80,8 +80,7 @@ function(label_test name)
   set_property(TEST ${name} APPEND PROPERTY ENVIRONMENT
     ${FRICTION_MPI_ENVIRONMENT})
   needs_processes(${name} ${_test_PROCESSES})
-  if(_test_BUILDS AND
-      (name MATCHES "^(build|load)/" OR NOT CMAKE_GENERATOR MATCHES "Makefiles"))
+  if(_test_BUILDS AND NOT CMAKE_GENERATOR MATCHES "Makefiles")
     set_property(TEST ${name} APPEND PROPERTY RESOURCE_LOCK build_tree)
   endif()
   # What takes long and one processor begins early, or it would have the other
@@ -119,7 +118,8 @@ function(friction_test_program target)
 endfunction()
 
 # add_build_test(name target [LOADS]): a test that makes a program, and loads it, before
-# those that need it.
+# those that need it. Not even make can do so several times at once where what is to be made
+# is the same, like the library.
 function(add_build_test name target)
   set(_load)
   if(ARGN AND FORK_SERVER)
@@ -129,8 +129,11 @@ function(add_build_test name target)
   add_test(NAME ${name}
     COMMAND ${_load}
       ${CMAKE_COMMAND} --build ${CMAKE_BINARY_DIR} --target ${target} --parallel 2)
-  label_test(${name} LABEL build BUILDS)
-  set_tests_properties(${name} PROPERTIES TIMEOUT 3600 COST 1000)
+  label_test(${name} LABEL build)
+  set_tests_properties(${name} PROPERTIES
+    RESOURCE_LOCK build_tree
+    TIMEOUT 3600
+    COST 1000)
 endfunction()
 
 # friction_study_program(target source ...): one that studies need, in release mode.
