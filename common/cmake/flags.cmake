@@ -5,7 +5,10 @@
 #
 #   Debug     deal.II's assertions, and -O1: its own -O0 makes our part of the tests
 #             several times slower, and finds nothing more
-#   Release   -O2
+#   Release   -O2, and loops of few passes written out, as those over two or three
+#             directions are: a sweep in 3D takes a sixth less time. deal.II's flags
+#             unroll all others as well, which costs an eighth of the time of the
+#             compiler and makes no sweep faster.
 #
 # Debug information makes libraries of 100 MB, and lines alone are a sixth of the time
 # that compiling takes: it is there if asked for, and lines with sanitizers.
@@ -33,7 +36,7 @@ function(friction_drop_flags variable pattern)
 endfunction()
 
 foreach(_variable DEAL_II_CXX_FLAGS DEAL_II_CXX_FLAGS_DEBUG DEAL_II_CXX_FLAGS_RELEASE)
-  friction_drop_flags(${_variable} "^-g|^-O[0-9s]?g?$|compress-debug-sections|prefix-map")
+  friction_drop_flags(${_variable} "^-g|^-O[0-9s]?g?$|^-funroll-|compress-debug-sections|prefix-map")
 endforeach()
 # deal.II may not want to hear of these of itself, but we do of us.
 foreach(_variable DEAL_II_WARNING_FLAGS DEAL_II_CXX_FLAGS DEAL_II_CXX_FLAGS_DEBUG
@@ -42,7 +45,7 @@ foreach(_variable DEAL_II_WARNING_FLAGS DEAL_II_CXX_FLAGS DEAL_II_CXX_FLAGS_DEBU
     "^-Wno-(deprecated-declarations|unused-parameter|unused-variable)$")
 endforeach()
 string(APPEND DEAL_II_CXX_FLAGS_DEBUG " -O1")
-string(APPEND DEAL_II_CXX_FLAGS_RELEASE " -O2")
+string(APPEND DEAL_II_CXX_FLAGS_RELEASE " -O2 -fpeel-loops")
 # Library and programs alike, so that headers parsed for one suit the other.
 if(NOT DEAL_II_CXX_FLAGS MATCHES "-fPIC")
   string(APPEND DEAL_II_CXX_FLAGS " -fPIC")
