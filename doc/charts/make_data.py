@@ -26,6 +26,8 @@ from chart import DataError, Table
 from map_fields import COLUMNS
 
 BEGIN = time.monotonic()
+# Also for scenes that stop when they are as exact as their mesh.
+TIGHT = "Solver/Inner tolerance=1e-9"
 
 
 def say(text):
@@ -120,7 +122,7 @@ class Measurements:
                 command = [self.options.precision, what.dim,
                            self.scene(what.dim, what.scene),
                            f"--table={table}",
-                           f"Refinement/Strategy={strategy}",
+                           f"Refinement/Strategy={strategy}", TIGHT,
                            *what.common, *overrides]
                 if reference:
                     command.append(f"--reference={reference}")
@@ -148,7 +150,7 @@ class Measurements:
                                "Scene/Exact displacement="])):
             table = self.runs / f"check-{name}.csv"
             run([self.options.precision, 2, self.scene(2, "manufactured"),
-                 f"--table={table}", "--half-widths=1,0.5", *runs.UNIFORM,
+                 f"--table={table}", "--half-widths=1,0.5", TIGHT, *runs.UNIFORM,
                  "Refinement/Initial refinements=1", *overrides],
                 self.runs / f"check-{name}.log")
             errors[name] = Table(table, ("energy_error",))["energy_error"]
@@ -182,7 +184,7 @@ class Measurements:
         # history was written: a result like any other.
         status = run([self.programs[what.dim],
                       self.scene(what.dim, what.scene),
-                      *what.overrides,
+                      TIGHT, *what.overrides,
                       f"Output/Directory={directory}", "Output/Fields=false",
                       f"Contact/Friction coefficient={friction}",
                       f"Solver/Coarse correction={correction}",
@@ -242,7 +244,7 @@ class Measurements:
 
     def compare(self, what, name, arguments):
         run([self.options.solvers, what.dim, self.scene(what.dim, what.scene),
-             f"--seconds={runs.patience(self.options.quick)}", *arguments],
+             f"--seconds={runs.patience(self.options.quick)}", TIGHT, *arguments],
             self.runs / f"{name}.log")
 
     def stability(self):
@@ -277,7 +279,7 @@ class Measurements:
                    f"--limit={runs.LIMIT}",
                    f"--seconds={runs.LIMIT_OF_RELAXATION}",
                    f"--repeat={runs.REPEAT}",
-                   *case.options, *case.overrides]
+                   *case.options, TIGHT, *case.overrides]
         given = any(option.startswith("--guess=") for option in case.options)
         results = {}
         for size, way in case.sizes.items():

@@ -67,6 +67,7 @@ class Runs:
             [self.programs[dim - 2],
              f"{self.root}/step-friction-{dim}d/scenes/{scene}.prm",
              f"Output/Directory={target}", "Output/Fields=false",
+             "Solver/Inner tolerance=1e-9",
              f"Refinement/Maximum dofs={dofs}", "Refinement/Levels=25", *entries],
             check=True, stdout=subprocess.DEVNULL)
         with h5py.File(target / "history.h5") as file:

@@ -388,6 +388,7 @@ namespace benchmark_certificate_units
         entries.push_back("Refinement/Maximum dofs=" +
                           std::to_string(static_cast<unsigned int>(limit)));
         entries.push_back("Refinement/Levels=25");
+        entries.push_back("Solver/Inner tolerance=1e-9");
         return run<dim>(
           read_parameters(path, entries), clamp, variants.vertical, distance);
       };

@@ -37,6 +37,7 @@ def run(dim, scene, n_processes, *entries):
     with tempfile.TemporaryDirectory() as directory:
         command = [program[dim], os.path.join(scenes[dim], scene + ".prm"),
                    "Output/Directory=" + directory, "Output/Fields=false",
+                   "Solver/Inner tolerance=1e-9",
                    "Output/Profile=true", "Output/Verbosity=levels", *entries]
         if n_processes > 1:
             command = [mpiexec, "-np", str(n_processes)] + command

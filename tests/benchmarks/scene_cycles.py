@@ -61,6 +61,7 @@ def run(dim, scene, n_processes, most, entries):
     with tempfile.TemporaryDirectory() as directory:
         command = [program[dim], os.path.join(scenes[dim], scene + ".prm"),
                    "Output/Directory=" + directory, "Output/Fields=false",
+                   "Solver/Inner tolerance=1e-9",
                    f"Refinement/Maximum dofs={most}", *entries]
         if n_processes > 1:
             command = [mpiexec, "-np", str(n_processes)] + command

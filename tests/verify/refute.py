@@ -56,7 +56,8 @@ def run(name, directory, more=()):
     scene = ROOT / f"step-friction-{dim}d" / "scenes" / f"{name}.prm"
     subprocess.run([str(PROGRAMS[dim - 2]), str(scene), f"Output/Directory={directory}",
                     "Output/Verification=true", "Output/Fields=false",
-                    "Output/Times=false", *entries, *more],
+                    "Output/Times=false", "Solver/Inner tolerance=1e-9", *entries,
+                    *more],
                    check=True, stdout=subprocess.DEVNULL)
 
 
