@@ -76,10 +76,10 @@ namespace Friction
       const double rounding = record.certificate * record.normal_force;
       const double normal   = first.normal_force_error / first.normal_force;
 
-      // A sum of tangential forces that is next to nothing has no relative
-      // error.
-      const double tangential =
-        first.tangential_force > 1e-6 * first.normal_force
+      // A sum of tangential forces that is next to nothing, or no larger than
+      // its own error, has no relative error.
+      const double tangential = first.tangential_force >
+          std::max(1e-6 * first.normal_force, first.tangential_force_error)
         ? first.tangential_force_error / first.tangential_force
         : 0.;
       record.normal_force_error =

@@ -192,6 +192,24 @@ namespace test_level_errors
             equal(drag.tangential_force_error,
                   .2 * oiled.back().normal_force_error),
           "friction begins in a later step");
+
+    // As iterations leave it that stop when they are as exact as the mesh.
+    auto         stopped  = first_step(4);
+    const double forces[] = {3e-5, 1e-5, 4e-5, 1e-5};
+    for (unsigned int k = 0; k < 4; ++k)
+      {
+        stopped[k].tangential_force = forces[k];
+        const std::vector<LevelRecord> before(stopped.begin(),
+                                              stopped.begin() + k);
+        set_errors(stopped[k], before, 2);
+      }
+    drag                  = later(stopped.back(), 2, 1.);
+    drag.tangential_force = .2 * drag.normal_force;
+    set_errors(drag, stopped, 2);
+    check(stopped.back().tangential_force_error > forces[3] &&
+            equal(drag.tangential_force_error,
+                  .2 * stopped.back().normal_force_error),
+          "the same, and less exact solutions");
   }
 
 
