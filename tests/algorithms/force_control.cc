@@ -123,9 +123,10 @@ namespace test_force_control
              const std::string &start,
              const std::string &levels)
   {
-    const std::string    strategy = "Refinement/Strategy=uniform";
+    const std::string strategy = "Refinement/Strategy=uniform",
+                      accuracy = "Solver/Inner tolerance=1e-9";
     NestedIteration<dim> given(without_safeguards(
-      read_parameters(scene_file(dim, scene), {strategy, levels})));
+      read_parameters(scene_file(dim, scene), {strategy, levels, accuracy})));
     given.begin();
     do
       given.solve();
@@ -142,6 +143,7 @@ namespace test_force_control
       scene_file(dim, scene),
       {strategy,
        levels,
+       accuracy,
        text.str(),
        "Boundary conditions/Displacement=" + boundary + ": " + start})));
     found.begin();

@@ -106,6 +106,7 @@ namespace test_incompressible
     // What takes least time on these small meshes.
     overrides.insert(overrides.end(),
                      {"Refinement/Levels=2",
+                      "Solver/Inner tolerance=1e-9",
                       "Solver/Smoothing steps=10",
                       "Solver/Coarse smoothing steps=10",
                       "Solver/Recombined steps=10"});

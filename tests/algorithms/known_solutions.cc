@@ -206,8 +206,9 @@ namespace test_known_solutions
   manufactured()
   {
     std::cout << "manufactured" << std::endl;
-    NestedIteration<2> iteration(without_safeguards(read_parameters(
-      SCENES_DIR "/manufactured.prm", {"Refinement/Levels=3"})));
+    NestedIteration<2> iteration(without_safeguards(
+      read_parameters(SCENES_DIR "/manufactured.prm",
+                      {"Refinement/Levels=3", "Solver/Inner tolerance=1e-9"})));
     iteration.begin();
     double last_energy_error = 0, last_pressure_error = 0;
     do

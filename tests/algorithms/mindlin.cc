@@ -73,8 +73,8 @@ TEST(mindlin)
   const bool        is_finer = !Tests::arguments().empty();
   const std::string size =
     is_finer ? Tests::arguments()[0] : "Refinement/Maximum dofs=5000";
-  NestedIteration<2> nest(
-    without_safeguards(read_parameters(SCENES_DIR "/mindlin.prm", {size})));
+  NestedIteration<2> nest(without_safeguards(read_parameters(
+    SCENES_DIR "/mindlin.prm", {size, "Solver/Inner tolerance=1e-9"})));
   nest.begin();
   do
     nest.solve();

@@ -56,8 +56,8 @@ TEST(mindlin_3d)
   const bool        is_finer = !Tests::arguments().empty();
   const std::string size =
     is_finer ? Tests::arguments()[0] : "Refinement/Maximum dofs=5000";
-  NestedIteration<3> nest(
-    without_safeguards(read_parameters(SCENES_3D_DIR "/mindlin.prm", {size})));
+  NestedIteration<3> nest(without_safeguards(read_parameters(
+    SCENES_3D_DIR "/mindlin.prm", {size, "Solver/Inner tolerance=1e-9"})));
   nest.begin();
   do
     nest.solve();

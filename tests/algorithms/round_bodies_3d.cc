@@ -384,5 +384,5 @@ TEST(round_bodies_3d)
        "Refinement/Maximum dofs=15000"});
   run("crossing-rods, adaptive refinement",
       "crossing-rods",
-      {"Refinement/Maximum dofs=15000"});
+      {"Refinement/Maximum dofs=15000", "Solver/Inner tolerance=1e-9"});
 }

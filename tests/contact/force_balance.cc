@@ -200,8 +200,10 @@ namespace test_force_balance
   void
   pressed(const std::string &scene)
   {
-    const auto nest = solved<dim>(
-      scene, {"Refinement/Levels=2", "Refinement/Strategy=adaptive"});
+    const auto              nest = solved<dim>(scene,
+                                  {"Refinement/Levels=2",
+                                                "Refinement/Strategy=adaptive",
+                                                "Solver/Inner tolerance=1e-9"});
     const ForceBalance<dim> balance =
       force_balance(nest->discretization(), nest->report().residual);
     check_everywhere(balance.imbalance() < rounding &&

@@ -150,6 +150,7 @@ namespace test_discretization_stop
     std::cout << name << std::endl;
     std::vector<std::string> all = overrides;
     all.push_back("Refinement/Levels=2");
+    all.push_back("Solver/Inner tolerance=1e-9");
     NestedIteration<2> nest(
       read_parameters(SCENES_DIR "/manufactured.prm", all));
     nest.begin();

@@ -51,7 +51,8 @@ namespace test_half_ball_3d
   {
     std::ostringstream text;
     text << "Scene/Constants=d = " << d;
-    std::vector<std::string> overrides = {text.str()};
+    std::vector<std::string> overrides = {text.str(),
+                                          "Solver/Inner tolerance=1e-9"};
     overrides.insert(overrides.end(), more.begin(), more.end());
     return without_safeguards(
       read_parameters(SCENES_3D_DIR "/half-ball.prm", overrides));
