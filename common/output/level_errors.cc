@@ -74,18 +74,26 @@ namespace Friction
                  record.estimated_error / record.normal_force /
                    (first.estimated_error / first.normal_force));
       const double rounding = record.certificate * record.normal_force;
-      const double normal   = first.normal_force_error / first.normal_force;
 
-      // A sum of tangential forces that is next to nothing, or no larger than
-      // its own error, has no relative error.
-      const double tangential = first.tangential_force >
-          std::max(1e-6 * first.normal_force, first.tangential_force_error)
-        ? first.tangential_force_error / first.tangential_force
-        : 0.;
+      // What the mesh is to blame for; what the iteration has left is that of
+      // each step.
+      const auto of_mesh = [&](const double error) {
+        return std::max(0., error - first.certificate * first.normal_force);
+      };
+      const double normal =
+        of_mesh(first.normal_force_error) / first.normal_force;
       record.normal_force_error =
         growth * growth * normal * record.normal_force + rounding;
+
+      // A sum of tangential forces that is next to nothing, or no larger than
+      // its own error, has no relative one. Its error is there all the same.
+      const double error = of_mesh(first.tangential_force_error);
+      const double tangential =
+        first.tangential_force > std::max(1e-6 * first.normal_force, error)
+        ? error / first.tangential_force * largest_tangential_force
+        : error / first.normal_force * record.normal_force;
       record.tangential_force_error = growth * growth *
-          std::max(normal, tangential) * largest_tangential_force +
+          std::max(normal * largest_tangential_force, tangential) +
         rounding;
     }
   } // namespace
