@@ -85,15 +85,11 @@ namespace Friction
       record.normal_force_error =
         growth * growth * normal * record.normal_force + rounding;
 
-      // A sum of tangential forces that is next to nothing, or no larger than
-      // its own error, has no relative one. Its error is there all the same.
-      const double error = of_mesh(first.tangential_force_error);
-      const double tangential =
-        first.tangential_force > std::max(1e-6 * first.normal_force, error)
-        ? error / first.tangential_force * largest_tangential_force
-        : error / first.normal_force * record.normal_force;
+      // A sum of tangential forces that is next to nothing is no scale.
+      const double tangential = of_mesh(first.tangential_force_error) /
+        std::max(first.tangential_force, .01 * first.normal_force);
       record.tangential_force_error = growth * growth *
-          std::max(normal * largest_tangential_force, tangential) +
+          std::max(normal, tangential) * largest_tangential_force +
         rounding;
     }
   } // namespace

@@ -25,8 +25,8 @@ namespace Friction
    *   size of the load; but it does not get smaller. Tangential forces may
    *   begin in a later step, and be taken back: their error is relative to the
    *   largest so far, with the larger relative error of both forces in the
-   *   first step, of which a tangential force that is no larger than its
-   *   error has none;
+   *   first step, that of a tangential force below a hundredth of the normal
+   *   one being relative to this hundredth;
    * - the peak pressure, which is that of a single node, has none: where other
    *   nodes begin to slide, the first step says nothing of it.
    *

@@ -5,7 +5,8 @@
 //   with it,
 // - do not get small where a tangential force is taken back,
 // - of widths follow the resolution of zones,
-// - do not depend on what has happened in steps between,
+// - do not depend on what has happened in steps between, nor on what the
+//   iteration has left in the first one,
 // and are unknown where nothing says how large they are.
 
 #include <common/estimate/error_bars.h>
@@ -193,23 +194,39 @@ namespace test_level_errors
                   .2 * oiled.back().normal_force_error),
           "friction begins in a later step");
 
-    // As iterations leave it that stop when they are as exact as the mesh.
-    auto         stopped  = first_step(4);
-    const double forces[] = {3e-5, 1e-5, 4e-5, 1e-5};
+    // What is less than a hundredth of the normal force is no scale.
+    auto faint = first_step(4);
     for (unsigned int k = 0; k < 4; ++k)
       {
-        stopped[k].tangential_force = forces[k];
-        const std::vector<LevelRecord> before(stopped.begin(),
-                                              stopped.begin() + k);
-        set_errors(stopped[k], before, 2);
+        faint[k].normal_force     = 2.;
+        faint[k].tangential_force = 1e-3 + 1e-4 * std::pow(.25, k);
+        set_errors(faint[k], {faint.begin(), faint.begin() + k}, 2);
       }
-    drag                  = later(stopped.back(), 2, 1.);
-    drag.tangential_force = .2 * drag.normal_force;
-    set_errors(drag, stopped, 2);
-    check(stopped.back().tangential_force_error > forces[3] &&
+    drag                  = later(faint.back(), 2, 1.);
+    drag.tangential_force = .4;
+    set_errors(drag, faint, 2);
+    check(faint.back().tangential_force_error > 0 &&
             equal(drag.tangential_force_error,
-                  .2 * stopped.back().normal_force_error),
-          "the same, and less exact solutions");
+                  .4 / .02 * faint.back().tangential_force_error),
+          "hardly any friction in the first step");
+
+    // What the iteration has left in the first step is not carried over.
+    auto exact = first_step(4), rough = exact;
+    for (unsigned int k = 0; k < 4; ++k)
+      {
+        rough[k].certificate = 1e-2;
+        set_errors(rough[k], {rough.begin(), rough.begin() + k}, 2);
+      }
+    LevelRecord expected = later(exact.back(), 2, 2.),
+                found    = later(rough.back(), 2, 2.);
+    found.certificate    = 0.;
+    set_errors(expected, exact, 2);
+    set_errors(found, rough, 2);
+    check(
+      rough.back().normal_force_error > 2. * exact.back().normal_force_error &&
+        equal(found.normal_force_error, expected.normal_force_error) &&
+        equal(found.tangential_force_error, expected.tangential_force_error),
+      "a first step that is not solved to the end");
   }
 
 
