@@ -63,3 +63,16 @@ def largest_angles(data):
               / np.linalg.norm(before, axis=-1))
     return (np.degrees(np.arccos(cosine)).max(axis=(1, 2)),
             corners.mean(axis=1))
+
+
+def cells_along_degenerate_lines(data):
+    """How many cells the coarsest and the finest part of the lines where two sides of
+    the hexahedron meet at the mantle would have along the whole cylinder: on the two
+    lower lines, and on the two upper ones."""
+    corners = data["points"][data["cells"]].astype(float)
+    on_line = np.all(np.abs(np.abs(corners[:, :, :2]) - np.sqrt(.5)) < 1e-5, axis=2)
+    along = np.ptp(corners[:, :, 2], axis=1)
+    number = np.round(np.ptp(data["points"][:, 2]) / along).astype(int)
+    above = corners[:, :, 1].mean(axis=1) > 0
+    return [(number[cells].min(), number[cells].max())
+            for cells in (on_line.sum(axis=1) >= 2) & np.array([~above, above])]

@@ -68,17 +68,18 @@ def outer_start(runs):
     """Outer iterations of Algorithm 2 by what they start from, beside the thesis."""
     thesis = {row[0]: row[1:] for row in THESIS}
     rows = ["       |      thesis       |       dofs here       |"
-            " from interpolated forces |        from zero",
+            "      from interpolated forces     |             from zero",
             " level |    dof outer  Jac |     Q1   with centres |"
-            "   outer  Jac  7th change |   outer  Jac  7th change"]
+            "   outer  Jac  7th change  factor |   outer  Jac  7th change  factor"]
     for line in (runs / "outer-start.txt").read_text().splitlines()[1:]:
-        mesh, _, forces, zero, _ = (part.split() for part in line.split("|"))
+        mesh, _, forces, zero, _, _ = (part.split() for part in line.split("|"))
         dof, _, _, outer, jac, _, _ = thesis.get(int(mesh[0]), [None] * 7)
         rows.append(f" {mesh[0]:>5} | {show(dof):>6} {show(outer):>5} {show(jac):>4} |"
                     f" {mesh[1]:>6} {mesh[2]:>14} |")
-        for outer, jac, _, seventh, _ in (forces, zero):
+        for outer, jac, _, seventh, factor, _ in (forces, zero):
             rows[-1] += (f"   {outer:>5} {jac:>4}  "
-                         f"{'-' if float(seventh) == 0 else seventh:>10} |")
+                         f"{'-' if float(seventh) == 0 else seventh:>10} "
+                         f"{factor if int(outer) > 2 else '-':>7} |")
         rows[-1] = rows[-1].rstrip(" |")
     return "\n".join(rows)
 
@@ -95,6 +96,17 @@ def cycles(runs):
         rows.append(f" {k:5d} {histories[0].levels['dofs'][k]:8d} " +
                     "".join(f"{run.levels['cycles'][k]:10d}"
                             for run in histories))
+    return "\n".join(rows)
+
+
+def marking(runs):
+    """Cycles of Algorithm 3 as in the thesis, on meshes that differ in what is marked."""
+    rows = [" marked  cycles from level 1", " thesis  " + "".join(
+        f"{row[6]:4d}" for row in THESIS if row[0] > 0)]
+    for part, name in ((.25, ""), (.3, "-marking-0.3"), (.4, "-marking-0.4"),
+                       (.5, "-marking-0.5")):
+        counts = HertzRun(runs / f"W33-monotone{name}").levels["cycles"][1:]
+        rows.append(f"   {part:4.2f}  " + "".join(f"{count:4d}" for count in counts))
     return "\n".join(rows)
 
 
@@ -198,6 +210,7 @@ def main():
                   "one-level": partial(one_level, runs),
                   "table-6.1": partial(table_6_1, runs),
                   "outer-start": partial(outer_start, runs),
+                  "marking": partial(marking, runs),
                   "cycles": partial(cycles, runs),
                   "half-plane": partial(comparison, runs),
                   "checks": partial(checks, runs)}, output, document)

@@ -12,7 +12,8 @@ import numpy as np
 import tables
 import plot_folder  # noqa: F401
 import vtu
-from cylinder import THESIS, CylinderRun, angle, largest_angles
+from cylinder import (THESIS, CylinderRun, angle, cells_along_degenerate_lines,
+                      largest_angles)
 from history import Run
 from tables import show
 
@@ -45,6 +46,8 @@ def table_6_2(runs):
             ("cylinder-thesis, one hexahedron, W(3,3), monotone, contact",
              "thesis-W-contact", 1),
             ("cylinder-thesis, one hexahedron, default cycle", "thesis", 1),
+            ("cylinder-thesis, O-grid, default cycle", "thesis-O-grid", 0),
+            ("cylinder, one hexahedron, default cycle", "one-cell", 2),
             ("cylinder, O-grid, default cycle", "large", 0)):
         jacobi, seidel = Run(runs / f"{name}-fixed-point"), Run(runs / name)
         rows += ["", f"       here: {title}", head]
@@ -134,16 +137,18 @@ def truncation(runs):
 
 
 def uniform(runs):
-    """Both coarse grids, refined uniformly."""
+    """Both coarse grids, refined uniformly, and the one of the thesis with its cycle
+    and truncation."""
     rows = []
     for title, name in (("O-grid", "uniform"),
-                        ("one hexahedron", "uniform-one-cell")):
+                        ("one hexahedron", "uniform-one-cell"),
+                        ("as in the thesis", "uniform-thesis")):
         for k, dofs, count, rate in zip(*(Run(runs / name).levels[key] for key in
                                           ("level", "dofs", "cycles",
                                            "contraction"))):
-            rows.append(f" {title if k == 0 else '':15}{dofs:8d} {count:7d} "
+            rows.append(f" {title if k == 0 else '':16}{dofs:8d} {count:7d} "
                         f"{rate:6.3f}")
-    return "\n".join([f" {'':15}    dofs  cycles   rate"] + rows)
+    return "\n".join([f" {'':16}    dofs  cycles   rate"] + rows)
 
 
 def ends(runs):
@@ -234,6 +239,10 @@ def checks(runs):
                  (np.hypot(middles[:, 0], middles[:, 1]) > 0.93))
         rows.append(f" largest angles of cells, {title}: {angles.max():.1f} of "
                     f"all, {np.median(angles[above]):.0f} typically above rods")
+    lower, upper = cells_along_degenerate_lines(data)
+    rows.append(f" cells per length of the cylinder along the degenerate lines: "
+                f"{lower[0]} to {lower[1]} on the lower ones, {upper[0]} to {upper[1]} "
+                "on the upper")
     counts = [Run(runs / f"W33-monotone{name}").levels["cycles"]
               for name in ("-fixed-point", "")]
     for title, count in zip(("2", "3"), counts):

@@ -9,13 +9,16 @@
 //
 // Algorithm 2 takes the outer iterations of the thesis, or one more, from zero
 // normal forces on each level, which is as far off as the interpolated nodal
-// forces that it starts from there; from stresses it takes no more.
+// forces that it starts from there; from stresses it takes no more. Its
+// contraction is smaller than in the thesis on levels 4 to 6, 0.019, 0.044 and
+// 0.060 there, and larger from level 7 on, 0.061.
 
 #include <common/algorithms/nested_iteration.h>
 
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/manifold_lib.h>
 
+#include <cmath>
 #include <iostream>
 
 #include <tests/support/check.h>
@@ -103,15 +106,22 @@ TEST(thesis_hertz)
       const VectorType   stresses = *nest.guess()[1];
       const unsigned int from_stresses =
         nest.solve_with(settings, u, state).outer_iterations;
-      *nest.guess()[1] = 0.;
-      const unsigned int from_zero =
-        nest.solve_with(settings, u, state).outer_iterations;
-      *nest.guess()[1] = stresses;
+      *nest.guess()[1]             = 0.;
+      const SolverReport zero      = nest.solve_with(settings, u, state);
+      const unsigned int from_zero = zero.outer_iterations;
+      *nest.guess()[1]             = stresses;
       if (nest.level() >= 4)
-        check(from_zero >= outer[nest.level()] &&
-                from_zero <= outer[nest.level()] + 1 &&
-                from_stresses <= from_zero,
-              "outer iterations as published, or one more");
+        {
+          check(from_zero >= outer[nest.level()] &&
+                  from_zero <= outer[nest.level()] + 1 &&
+                  from_stresses <= from_zero,
+                "outer iterations as published, or one more");
+          const double expected[] = {.010, .026, .053, .071};
+          check(std::abs(
+                  zero.rho_tau_contraction() / expected[nest.level() - 4] - 1) <
+                  .2,
+                "contraction of Algorithm 2, to a fifth");
+        }
       const SolverReport &report = nest.solve();
       const unsigned int  here = nest.discretization().dof_handler().n_dofs() +
         2 * nest.mesh().n_active_cells();
