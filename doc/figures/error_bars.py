@@ -9,7 +9,8 @@ disc of Hertz with several coefficients of friction, a block, a punch and a half
 is what the finest of the adaptive meshes gives, and meshes with up to a sixth of its
 unknowns are judged. (Hertz's own formula is that of a half-plane, from which a half disc
 differs by more than what fine meshes do.) Each mesh whose errors are known gives a case
-for each quantity. Left out are cases whose truth is met up to rounding, which both error
+for each quantity. Left out are meshes with fewer than five nodes in contact, cases without
+an estimate, those whose truth is met up to rounding, which both error
 and estimate say, and the peak pressure of 'punch', which has a corner there.
 
 'half-plane' is the half disc pressed by a sixteenth of the depth, where it differs from
@@ -27,7 +28,8 @@ only: its two halves cancel, but for the turning of tangents along the arc.
 The exit status is 1 if the truth is outside of the bar in more than one of twenty cases
 of any quantity, in first load steps or in later ones, or if for the median case bars are
 more than five times the error, in later steps six times. 'few': coarser meshes, without a
-figure, for a test. On these bars are wider, and only the first is judged.
+figure, for a test. On these bars are wider, up to twenty times. The column 'within 5' has
+the cases in which they are no more than five times the error.
 """
 
 import subprocess
@@ -205,8 +207,9 @@ def line(name, family, cases):
     errors, bars, _ = np.array(cases).T
     inside = int(np.sum(errors <= bars))
     ratio = np.median(bars / np.maximum(errors, 1e-300))
-    return (f"{name:<22} {family:<23} {inside:4d} of {len(errors):3d} {ratio:8.1f}",
-            inside, len(errors), ratio)
+    near = np.mean(bars <= 5 * errors)
+    return (f"{name:<22} {family:<23} {inside:4d} of {len(errors):3d} {ratio:8.1f}"
+            f" {near:8.0%}", inside, len(errors), ratio)
 
 
 def draw(result, path):
@@ -246,7 +249,8 @@ def main():
     few = sys.argv[6:] == ["few"]
     with tempfile.TemporaryDirectory() as folder:
         result = all_cases(Runs(programs, root, Path(folder), few))
-    lines, good = [f"{'quantity':<22} {'runs':<23} {'inside':>11} {'median':>8}"], True
+    lines, good = [f"{'quantity':<22} {'runs':<23} {'inside':>11} {'median':>8}"
+                   f" {'within 5':>8}"], True
     for later in (False, True):
         for name, title in QUANTITIES.items():
             together = []
@@ -258,7 +262,7 @@ def main():
                 text, inside, n, ratio = line(title, "all" + later * LATER, together)
                 lines.append(text)
                 good = (good and inside >= .95 * n
-                        and (few or ratio <= (6 if later else 5)))
+                        and ratio <= (20 if few else 6 if later else 5))
     print("\n".join(lines))
     table.write_text("\n".join(lines) + "\n")
     if not few:
