@@ -85,10 +85,7 @@ namespace benchmark_outer_start
         const VectorType   stresses     = *nest.guess()[1];
         std::ostringstream columns;
         columns << std::scientific << std::setprecision(1);
-        double       norms = 0;
-        VectorType   first;
-        ContactState first_state(0, false);
-        SolverReport first_report;
+        double norms = 0;
         for (const Start &start : starts)
           {
             *nest.guess()[0] = displacement;
@@ -117,14 +114,9 @@ namespace benchmark_outer_start
               {
                 if (other.cycles.size() > 1)
                   norms = ratio_of_norms(nest, seidel, other.cycles.size());
-                first        = u;
-                first_state  = state;
-                first_report = report;
+                nest.accept(u, state, report);
               }
           }
-        *nest.guess()[0] = displacement;
-        *nest.guess()[1] = stresses;
-        nest.accept(first, first_state, first_report);
         const unsigned int n_dofs =
           nest.discretization().dof_handler().n_dofs();
         std::cout << std::setw(6) << nest.level() << std::setw(9) << n_dofs

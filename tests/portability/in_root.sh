@@ -14,6 +14,11 @@ because() {
   reason="$reason${reason:+; }$*"
 }
 
+# Where a log says first that something is wrong, for a cell of the row.
+first_error() {
+  grep -m1 -E '(^|[^a-z-])([Ee]rror|ERROR|FAILED)|^E: ' "$1" | tr '|' ' '
+}
+
 # Warnings of our sources, each once, in what a build has printed.
 n_warnings() {
   cat "$@" |
@@ -88,7 +93,7 @@ fi
 command=$(.ci/readme-command run | with_compiler)
 configured=no
 bash -euo pipefail -c "$command" >run.log 2>&1 && configured=yes ||
-  because "$(grep -m1 -E '(^|[^a-z-])([Ee]rror|ERROR|FAILED)|^E: ' run.log | tr '|' ' ')"
+  because "$(first_error run.log)"
 dealii=$(sed -n 's/.*DEAL_II_PACKAGE_VERSION "\([^"]*\)".*/\1/p' \
   "$(find /usr/include -path '*deal.II/base/config.h' | head -1)")
 
@@ -99,7 +104,7 @@ command="$(echo "$tests" | sed '$d')
 cmake --preset release &&
 cmake --build --preset release --target tests-optimised"
 bash -euo pipefail -c "$(echo "$command" | with_compiler)" >debug.log 2>&1 ||
-  because "$(grep -m1 -E '(^|[^a-z-])([Ee]rror|ERROR|FAILED)|^E: ' debug.log | tr '|' ' ')"
+  because "$(first_error debug.log)"
 bash -c "$(echo "$tests" | tail -1) -L quick" >quick.log 2>&1
 
 tables=
