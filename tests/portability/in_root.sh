@@ -16,7 +16,7 @@ because() {
 
 # Where a log says first that something is wrong, for a cell of the row.
 first_error() {
-  grep -m1 -E '(^|[^a-z-])([Ee]rror|ERROR|FAILED)|^E: ' "$1" | tr '|' ' '
+  grep -m1 -E '(^|[^a-zA-Z-])([Ee]rror|ERROR|FAILED)|^E: ' "$1" | tr '|' ' '
 }
 
 # Warnings of our sources, each once, in what a build has printed.
