@@ -9,6 +9,9 @@ n=$3
 mpiexec=$4
 numproc_flag=$5
 failures=0
+# One process as users start it, which is quicker, too.
+launched=yes
+[ "$n" -gt 1 ] || launched=
 messages=$(mktemp) || exit 1
 trap 'rm -f "$messages"' EXIT
 
@@ -20,8 +23,7 @@ expect()
   wanted=$2
   n_messages=$3
   shift 3
-  # One process as users start it, which is quicker, too.
-  if [ "$n" -eq 1 ]; then
+  if [ -z "$launched" ]; then
     timeout 60 "$program" "$@" >"$messages" 2>&1
   else
     timeout 60 "$mpiexec" "$numproc_flag" "$n" "$program" "$@" >"$messages" 2>&1
@@ -46,5 +48,13 @@ expect restart 0 0 --restart "$scene" Refinement/Levels=3
 expect restart 1 0 "$scene"
 expect solved 2 1 --restart
 expect solved 2 1 "$scene.missing"
+
+# One process may as well be launched like several.
+if [ -z "$launched" ]; then
+  launched=yes
+  expect solved 0 0 "$scene"
+  expect unsolved 1 0 "$scene"
+  expect unexpected 3 1 "$scene"
+fi
 
 [ $failures -eq 0 ]
