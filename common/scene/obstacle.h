@@ -47,7 +47,8 @@ namespace Friction
       double         radius;
       double         length; ///< may be infinite
 
-      /// Whether it is a hole in the obstacle, and the body in it.
+      /// Whether it is a hole in the obstacle, and the body in it, or in one
+      /// of them.
       bool is_hole = false;
     };
 
@@ -166,8 +167,11 @@ namespace Friction
           if (cosine > flattest_cosine)
             gap = std::min(gap, plane.normal * (plane.point - p) / cosine);
         }
+      const Rod *hole = hole_around(p);
       for (const Rod &rod : rods)
         {
+          if (rod.is_hole && &rod != hole)
+            continue;
           // The intersection of the ray with the circle, in the plane
           // perpendicular to the axis: the first one, or the way out of a
           // hole.
@@ -201,8 +205,8 @@ namespace Friction
 
     /**
      * The unit vector from @p p straight towards the (nearest part of the)
-     * obstacle; from inside, the one that led there. Beyond the end of a rod,
-     * to where it would be if it were longer.
+     * obstacle; from inside, the one that led there. Beyond the ends of all
+     * rods, to where they would be if they were longer.
      * @param outward  if given, the normal of a body in @p p: only those parts
      *                 of the obstacle count that it faces, and not those to
      *                 which the way leads through the body. Zero if there is
@@ -226,8 +230,13 @@ namespace Friction
       };
       for (const Plane &plane : planes)
         consider(plane.normal * (plane.point - p), plane.normal);
+      const bool any_reaches = any_reaches_as_far_as(p);
+      const Rod *hole        = hole_around(p);
       for (const Rod &rod : rods)
         {
+          if ((any_reaches && !reaches_as_far_as(rod, p)) ||
+              (rod.is_hole && &rod != hole))
+            continue;
           const Tensor<1, dim> to_axis = across(rod, rod.center - p);
           const double         side    = rod.is_hole ? -1. : 1.;
           if (to_axis.norm() > 0.)
@@ -243,6 +252,43 @@ namespace Friction
     }
 
   private:
+    /// A rod that has ended before the point counts only if all of them have.
+    static bool
+    reaches_as_far_as(const Rod &rod, const Point<dim> &p)
+    {
+      return std::abs((p - rod.center) * rod.axis) <= (.5 + 1e-10) * rod.length;
+    }
+
+    bool
+    any_reaches_as_far_as(const Point<dim> &p) const
+    {
+      return std::any_of(rods.begin(), rods.end(), [&](const Rod &rod) {
+        return reaches_as_far_as(rod, p);
+      });
+    }
+
+    /// Of several holes that in which the point is, or the nearest one; null if
+    /// there are none.
+    const Rod *
+    hole_around(const Point<dim> &p) const
+    {
+      const bool any_reaches = any_reaches_as_far_as(p);
+      const Rod *result      = nullptr;
+      double     deepest     = 0;
+      for (const Rod &rod : rods)
+        if (rod.is_hole && (!any_reaches || reaches_as_far_as(rod, p)))
+          {
+            const double depth =
+              rod.radius - across(rod, rod.center - p).norm();
+            if (result == nullptr || depth > deepest)
+              {
+                result  = &rod;
+                deepest = depth;
+              }
+          }
+      return result;
+    }
+
     /// The part of a vector perpendicular to the axis of a rod.
     static Tensor<1, dim>
     across(const Rod &rod, const Tensor<1, dim> &v)

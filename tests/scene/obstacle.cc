@@ -127,6 +127,46 @@ TEST(obstacle)
               << ' ' << cavity.normal(Point<3>(1, 2, 4)) << std::endl;
   }
   {
+    // A body is in one of several holes, whose wall is not that of the others.
+    // Where a rod has ended, the next one counts that is still there.
+    std::cout << "several holes, and rods that end" << std::endl;
+    Obstacle<2> holes;
+    holes.add({Point<2>(0, 0), Tensor<1, 2>(), 1., 1e300, true});
+    holes.add({Point<2>(3, 0), Tensor<1, 2>(), 1., 1e300, true});
+    for (const double side : {-1., 1.})
+      {
+        const Point<2> p(side > 0 ? 3.6 : -.6, 0);
+        check_below(std::abs(holes.gap(p, side * right) - .4) +
+                      (holes.normal(p) - side * right).norm(),
+                    1e-14,
+                    "the wall of the hole around a point");
+      }
+    const Tensor<1, 3> along({0., 0., 1.});
+    const auto         staggered = Obstacle<3>::make_rods(
+      {Point<3>(0., 0., .5), Point<3>(.3, 0., 1.5)}, {along, along}, .1, 1.);
+    const Point<3>     p(.1, .5, 1.5);
+    const Tensor<1, 3> to_second = Point<3>(.3, 0., 1.5) - p;
+    check_below((staggered.normal(p) - to_second / to_second.norm()).norm() +
+                  std::abs(staggered.gap(p, staggered.normal(p)) -
+                           (to_second.norm() - .1)),
+                1e-14,
+                "the rod that has not ended");
+
+    // A bore that gets narrower at z = 1.
+    Obstacle<3> bore;
+    bore.add({Point<3>(0., 0., .5), along, .2, 1., true});
+    bore.add({Point<3>(0., 0., 1.5), along, .1, 1., true});
+    const Tensor<1, 3> sideways({1., 0., 0.});
+    for (const double z : {.5, 1.5})
+      {
+        const Point<3> q(.05, 0., z);
+        check_below((bore.normal(q) - sideways).norm() +
+                      std::abs(bore.gap(q, sideways) - (z < 1 ? .15 : .05)),
+                    1e-14,
+                    "the part of the bore around a point");
+      }
+  }
+  {
     // The same surface as a disc and by formulas, one a distance, one not.
     std::cout << "surfaces" << std::endl;
     const Point<2> c(.3, -1.5);
