@@ -39,9 +39,38 @@ namespace Friction
     if (is_exact())
       text << ", nodes exact to 1e-10";
     else
-      text << ", nodes " << node / node_size << " of the largest";
+      text << ", nodes " << (node_size > 0. ? node / node_size : node)
+           << (node_size > 0. ? " of the largest" : "");
     return text.str();
   }
+
+
+
+  namespace
+  {
+    // By central differences. A step that does not go with the lengths of the
+    // scene, as that of deal.II's FunctionParser, would be good in some units
+    // only. One that goes with the shortest edge of the cell stays inside of
+    // it, and is exact enough unless cells are very thin.
+    template <int dim>
+    Tensor<2, dim>
+    gradient_of(const Function<dim> &u, const Point<dim> &p, const double step)
+    {
+      Tensor<2, dim> gradient;
+      Vector<double> before(dim), after(dim);
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          Point<dim> a = p, b = p;
+          a[d] -= step;
+          b[d] += step;
+          u.vector_value(a, before);
+          u.vector_value(b, after);
+          for (unsigned int c = 0; c < dim; ++c)
+            gradient[c][d] = (after[c] - before[c]) / (b[d] - a[d]);
+        }
+      return gradient;
+    }
+  } // namespace
 
 
 
@@ -79,10 +108,10 @@ namespace Friction
                                                                      strains);
             for (const unsigned int q : fe_values.quadrature_point_indices())
               {
-                Tensor<2, dim> gradient;
-                for (unsigned int c = 0; c < dim; ++c)
-                  gradient[c] =
-                    exact.gradient(fe_values.quadrature_point(q), c);
+                const Tensor<2, dim> gradient =
+                  gradient_of(exact,
+                              fe_values.quadrature_point(q),
+                              1e-4 * cell->minimum_vertex_distance());
                 const SymmetricTensor<2, dim> e =
                   symmetrize(gradient) - strains[q];
                 const double theta = trace(gradient) -
