@@ -177,6 +177,16 @@ namespace Friction
             throw InputError(here + "'" + excerpt(numbers[2]) +
                              "' as volumetric strain; take 'mean' or "
                              "'pointwise'.");
+          const std::string where = "where ";
+          if (text.key.compare(0, where.size(), where) == 0)
+            {
+              const std::string condition = text.key.substr(where.size());
+              if (!has_comparison(parameters.expressions.expand(condition)))
+                throw InputError(subject + ": '" + excerpt(condition) +
+                                 "' compares nothing, and would be true "
+                                 "wherever it is not zero; write a condition, "
+                                 "as in 'where y > 0.9: 100*E, nu'.");
+            }
           const double E = parameters.expressions.evaluate(numbers[0], subject);
           const double nu =
             parameters.expressions.evaluate(numbers[1], subject);
@@ -345,6 +355,14 @@ namespace Friction
       obstacle.axes     = read_vectors(path("Axes"), values, expressions);
       obstacle.is_hole  = values.get(path("Side")) == "inside";
       obstacle.function = values.get(path("Function"));
+      check_is_one_value(obstacle.function, values.subject(path("Function")));
+      if (obstacle.kind == ObstacleKind::surface &&
+          is_condition(expressions.expand(obstacle.function)))
+        throw InputError(values.subject(path("Function")) + ": '" +
+                         excerpt(obstacle.function) +
+                         "' is a condition, true or false; write what is "
+                         "positive where the body may be and grows away from "
+                         "the surface, as 'y + 1' in place of 'y > -1'.");
       for (const auto &radius :
            read_vectors(path("Radius"), values, expressions))
         {

@@ -84,6 +84,48 @@ namespace Friction
       }
   }
 
+  /** Whether an expression compares anything, at any depth of parentheses. */
+  inline bool
+  has_comparison(const std::string &expression)
+  {
+    return expression.find_first_of("<>") != std::string::npos ||
+      expression.find("==") != std::string::npos ||
+      expression.find("!=") != std::string::npos;
+  }
+
+  /**
+   * Whether an expression is true or false, that is 1 or 0, since outside of
+   * all parentheses but those around all of it there is a comparison or a
+   * logical operator.
+   */
+  inline bool
+  is_condition(const std::string &expression)
+  {
+    std::string text = dealii::Utilities::trim(expression);
+    while (true)
+      {
+        int  depth       = 0;
+        bool is_enclosed = text.size() > 2 && text.front() == '(';
+        bool found       = false;
+        for (std::size_t i = 0; i < text.size(); ++i)
+          {
+            const char c = text[i];
+            depth += (c == '(') - (c == ')');
+            if (depth == 0 && i + 1 < text.size())
+              is_enclosed = false;
+            // A number, chosen by a condition.
+            if (depth == 0 && c == '?')
+              return false;
+            if (depth == 0 &&
+                std::string("<>=!&|").find(c) != std::string::npos)
+              found = true;
+          }
+        if (!is_enclosed)
+          return found;
+        text = dealii::Utilities::trim(text.substr(1, text.size() - 2));
+      }
+  }
+
   /**
    * Throws InputError if an expression is another number each time that it is
    * asked for, as those with muParser's 'rand()' are.
