@@ -1,10 +1,16 @@
 #include <common/output/mesh_warnings.h>
+#include <common/output/penetration.h>
 #include <common/output/warnings.h>
 #include <common/parallel/collective_error.h>
 #include <common/parallel/reductions.h>
 #include <common/printable.h>
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/base/symmetric_tensor.h>
+
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
 
 #include <deal.II/lac/vector.h>
 
@@ -26,50 +32,19 @@ namespace Friction
     // 0.18.
     constexpr double large_angle = 10.; // degrees
 
-    // Relative to the largest displacement at the contact boundary, and to the
-    // body.
+    // How far nodes in contact are from the obstacle, relative to how far
+    // others have moved against them; how deep the body is in it between nodes,
+    // relative to the largest displacement; the largest displacement, relative
+    // to the body; and strains.
     constexpr double large_distance     = .1;
     constexpr double large_displacement = .1;
+    constexpr double large_strain       = .1;
 
     // Of all forces, what a single point may bear.
     constexpr double large_share = .1;
 
     // Of a boundary that is not to touch the obstacle, relative to the body.
     constexpr double visible_depth = 1e-3;
-
-
-
-    // The largest value of all processes, and its place.
-    template <int dim>
-    std::pair<double, Point<dim>>
-    largest(const MPI_Comm    communicator,
-            const double      value,
-            const Point<dim> &point)
-    {
-      std::array<double, dim + 1> own;
-      own[0] = value;
-      for (unsigned int d = 0; d < dim; ++d)
-        own[d + 1] = point[d];
-      std::pair<double, Point<dim>> result(value, point);
-      for (const auto &other : Utilities::MPI::all_gather(communicator, own))
-        if (other[0] > result.first)
-          {
-            result.first = other[0];
-            for (unsigned int d = 0; d < dim; ++d)
-              result.second[d] = other[d + 1];
-          }
-      return result;
-    }
-
-
-
-    // Whether there is an obstacle and a boundary to touch it.
-    template <int dim>
-    bool
-    can_touch(const ContactCondition<dim> &condition)
-    {
-      return condition.has_boundary() && !condition.obstacle.empty();
-    }
 
 
 
@@ -95,12 +70,15 @@ namespace Friction
         discretization.dof_handler().get_triangulation();
       if (materials.is_homogeneous())
         return {static_cast<unsigned int>(mesh.n_global_active_cells())};
+      const MPI_Comm communicator = discretization.constraints().communicator();
       std::vector<unsigned int> n_cells(materials.of_regions().size(), 0);
-      for (const auto &cell : mesh.active_cell_iterators())
-        if (cell->is_locally_owned())
-          ++n_cells[materials.region(cell)];
+      on_all_processes(communicator, [&]() {
+        for (const auto &cell : mesh.active_cell_iterators())
+          if (cell->is_locally_owned())
+            ++n_cells[materials.region(cell)];
+      });
       for (unsigned int &n : n_cells)
-        n = Utilities::MPI::sum(n, discretization.constraints().communicator());
+        n = Utilities::MPI::sum(n, communicator);
       return n_cells;
     }
 
@@ -169,8 +147,18 @@ namespace Friction
                 for (unsigned int c = 0; c < dim; ++c)
                   if (condition.components[c])
                     {
-                      const Point<dim> p = cell->face(f)->vertex(v);
-                      const double value = condition.displacement->value(p, c);
+                      // A value that is no number is an error only where it
+                      // is the one that holds.
+                      const Point<dim> p     = cell->face(f)->vertex(v);
+                      double           value = 0;
+                      try
+                        {
+                          value = condition.displacement->value(p, c);
+                        }
+                      catch (const InputError &)
+                        {
+                          continue;
+                        }
                       const auto [entry, is_new] =
                         prescribed.insert({{cell->face(f)->vertex_index(v), c},
                                            {condition.boundary_id, value}});
@@ -194,83 +182,44 @@ namespace Friction
 
 
 
-    // The deepest of the nodes that are no contact nodes and yet inside an
-    // obstacle, and its place: undeformed, of those on the contact boundary,
-    // which have been left out, in the obstacle that this part of it faces;
-    // displaced, of those on all of the boundary that have been outside before.
-    // (A body may well hang over the edge of what is a half space here.) Where
-    // something is prescribed, so is where they go. A length.
+    // The directions in which a traction on a boundary is not zero, where it is
+    // integrated.
     template <int dim>
-    std::pair<double, Point<dim>>
-    depth_of_other_nodes(const Discretization<dim> &discretization,
-                         const VectorType          *displacement = nullptr)
+    std::array<unsigned int, dim>
+    directions_of(const TractionCondition<dim> &condition,
+                  const Discretization<dim>    &discretization)
     {
-      const Scene<dim>            &scene = discretization.scene();
-      const NodalConstraints<dim> &nodes = discretization.constraints();
-      const double                 size  = discretization.body_size();
-      struct BoundaryNode
-      {
-        Point<dim>                              point;
-        std::set<const ContactCondition<dim> *> conditions;
-      };
-      std::map<unsigned int, BoundaryNode> boundary;
-      std::vector<char>                    is_contact(nodes.n_nodes(), 0);
-      for (const auto &cell :
-           discretization.dof_handler().active_cell_iterators())
-        if (!cell->is_artificial())
-          for (const unsigned int f : cell->face_indices())
-            if (cell->at_boundary(f))
-              {
-                const ContactCondition<dim> *condition =
-                  scene.contact_on(cell->face(f)->boundary_id());
-                if (displacement == nullptr && condition == nullptr)
-                  continue;
-                for (const unsigned int v : cell->face(f)->vertex_indices())
-                  {
-                    BoundaryNode &node = boundary[nodes.node_of_dof(
-                      cell->face(f)->vertex_dof_index(v, 0))];
-                    node.point         = cell->face(f)->vertex(v);
-                    node.conditions.insert(condition);
-                  }
-              }
-      // Where none of the nodes can touch, other warnings say so.
-      std::vector<unsigned int> n_nodes(scene.contact_conditions().size(), 0);
-      for (const ContactNode<dim> &p : discretization.contact())
-        {
-          is_contact[p.node] = 1;
-          ++n_nodes[p.condition];
-        }
-      for (unsigned int &n : n_nodes)
-        n = Utilities::MPI::sum(n, nodes.communicator());
-
-      const auto depth_in = [](const Obstacle<dim> &obstacle,
-                               const Point<dim>    &p) {
-        const double gap = obstacle.gap(p, obstacle.normal(p));
-        return std::isfinite(gap) ? -gap : 0.;
-      };
-      std::pair<double, Point<dim>> deepest(0., Point<dim>());
-      for (const auto &[node, at] : boundary)
-        if (!is_contact[node] && nodes.is_free(node) &&
-            node < nodes.n_owned_nodes())
-          for (unsigned int i = 0; i < n_nodes.size(); ++i)
-            {
-              const ContactCondition<dim> &condition =
-                scene.contact_conditions()[i];
-              if (n_nodes[i] == 0 || !can_touch(condition) ||
-                  (displacement == nullptr &&
-                   at.conditions.count(&condition) == 0))
-                continue;
-              Point<dim> moved = at.point;
-              if (displacement != nullptr)
-                for (unsigned int d = 0; d < dim; ++d)
-                  moved[d] += displacement->local_element(dim * node + d);
-              const double depth = depth_in(condition.obstacle, moved);
-              if (depth > deepest.first &&
-                  (displacement == nullptr ||
-                   depth_in(condition.obstacle, at.point) <= 1e-10 * size))
-                deepest = {depth, at.point};
-            }
-      return largest<dim>(nodes.communicator(), deepest.first, deepest.second);
+      const MPI_Comm communicator = discretization.constraints().communicator();
+      const FE_Q<dim>               element(1);
+      FEFaceValues<dim>             values(discretization.mapping(),
+                               element,
+                               QGauss<dim - 1>(4),
+                               update_quadrature_points);
+      std::array<unsigned int, dim> has_part;
+      has_part.fill(0);
+      on_all_processes(communicator, [&]() {
+        Vector<double> traction(dim);
+        for (const auto &cell :
+             discretization.dof_handler().active_cell_iterators())
+          if (cell->is_locally_owned())
+            for (const unsigned int f : cell->face_indices())
+              if (cell->at_boundary(f) &&
+                  cell->face(f)->boundary_id() == condition.boundary_id)
+                {
+                  values.reinit(
+                    typename Triangulation<dim>::cell_iterator(cell), f);
+                  for (const Point<dim> &point : values.get_quadrature_points())
+                    {
+                      condition.traction->vector_value(point, traction);
+                      for (unsigned int d = 0; d < dim; ++d)
+                        if (traction[d] != 0.)
+                          has_part[d] = 1;
+                    }
+                }
+      });
+      for (unsigned int &direction : has_part)
+        direction = Utilities::MPI::max(direction, communicator);
+      return has_part;
     }
 
 
@@ -279,20 +228,75 @@ namespace Friction
     // gives way.
     template <int dim>
     void
-    warn_of_useless_tractions(const Scene<dim>         &scene,
-                              std::vector<std::string> &warnings)
+    warn_of_useless_tractions(const Discretization<dim> &discretization,
+                              std::vector<std::string>  &warnings)
     {
+      const Scene<dim> &scene = discretization.scene();
       for (const auto &traction : scene.traction_conditions())
         for (const auto &condition : scene.dirichlet_conditions())
-          if (condition.boundary_id == traction.boundary_id &&
-              condition.platen == nullptr &&
-              condition.components.n_selected_components(dim) == dim)
-            warnings.push_back(
-              "Warning: 'Boundary conditions/Traction' does not move "
-              "boundary " +
-              std::to_string(traction.boundary_id) +
-              ", since all of its displacements are prescribed; leave a "
-              "component 'free', or the traction out.");
+          if (condition.boundary_id == traction.boundary_id)
+            {
+              std::vector<unsigned int> held;
+              for (unsigned int d = 0; d < dim; ++d)
+                if (condition.components[d] &&
+                    !(condition.platen != nullptr &&
+                      condition.platen->is_controlled[d]))
+                  held.push_back(d);
+              const std::string sentence =
+                "Warning: 'Boundary conditions/Traction' does not move "
+                "boundary " +
+                std::to_string(traction.boundary_id);
+              if (held.size() == dim)
+                {
+                  warnings.push_back(
+                    sentence +
+                    ", since all of its displacements are prescribed; leave a "
+                    "component 'free', or the traction out.");
+                  continue;
+                }
+              const auto has_part = directions_of(traction, discretization);
+              for (const unsigned int d : held)
+                if (has_part[d] > 0)
+                  warnings.push_back(
+                    sentence + " in " + "xyz"[d] +
+                    " direction, in which its displacement is prescribed; "
+                    "leave that component 'free', or set that of the traction "
+                    "to "
+                    "zero.");
+            }
+    }
+
+
+
+    // The root of the mean square of strains, by the middles of cells; peaks at
+    // corners, which grow with refinement, hardly matter to it.
+    template <int dim>
+    double
+    mean_strain(const Discretization<dim> &discretization,
+                const VectorType          &displacement)
+    {
+      VectorType u = discretization.vector();
+      u.copy_locally_owned_data_from(displacement);
+      discretization.interpolate_hanging_nodes(u);
+      FEValues<dim>                        values(discretization.mapping(),
+                           discretization.dof_handler().get_fe(),
+                           QMidpoint<dim>(),
+                           update_gradients | update_JxW_values);
+      const FEValuesExtractors::Vector     vector(0);
+      std::vector<SymmetricTensor<2, dim>> strain(1);
+      std::array<double, 2>                sums{};
+      for (const auto &cell :
+           discretization.dof_handler().active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            values.reinit(cell);
+            values[vector].get_function_symmetric_gradients(u, strain);
+            sums[0] += strain[0] * strain[0] * values.JxW(0);
+            sums[1] += values.JxW(0);
+          }
+      sums =
+        sum_over_processes(sums, discretization.constraints().communicator());
+      return std::sqrt(sums[0] / sums[1]);
     }
 
 
@@ -453,7 +457,7 @@ namespace Friction
       scene.warning(discretization.contact().largest_coefficient());
     if (!about_scene.empty())
       warnings.push_back(about_scene);
-    warn_of_useless_tractions(scene, warnings);
+    warn_of_useless_tractions(discretization, warnings);
     warn_of_materials(discretization, warnings);
     warn_of_digits<dim>(mesh, communicator, warnings);
     warn_of_contradictions(mesh, scene, discretization.body_size(), warnings);
@@ -477,8 +481,9 @@ namespace Friction
           of_section(scene, conditions[i]) +
           " faces the obstacle, so there will be no contact" +
           (conditions.size() == 1 ? "" : " there") +
-          "; does the normal of the obstacle point into it, and is '" +
-          conditions[i].section() + "/Boundary id' the right one?");
+          "; does the normal of the obstacle point into it, is '" +
+          conditions[i].section() +
+          "/Boundary id' the right one, and are its displacements free?");
 
     double     depth = 0;
     Point<dim> where;
@@ -521,48 +526,86 @@ namespace Friction
     const Scene<dim> &scene     = discretization.scene();
     const MPI_Comm communicator = discretization.constraints().communicator();
 
+    // Of each boundary the node that is farthest from its obstacle: distance,
+    // displacement along its normal, and that normal.
+    struct Farthest
+    {
+      double         distance = 0, normal_displacement = 0;
+      Tensor<1, dim> normal;
+
+      std::array<double, dim + 2>
+      numbers() const
+      {
+        std::array<double, dim + 2> result{{distance, normal_displacement}};
+        for (unsigned int d = 0; d < dim; ++d)
+          result[2 + d] = normal[d];
+        return result;
+      }
+    };
+    std::vector<Farthest> farthest(scene.contact_conditions().size());
+
     ContactGeometry result;
-    result.boundaries.resize(scene.contact_conditions().size());
+    result.boundaries.resize(farthest.size());
     const auto &contact = discretization.contact();
     for (unsigned int p = 0; p < contact.size(); ++p)
+      if (state.in_contact(p))
+        {
+          auto &boundary = result.boundaries[contact[p].condition];
+          ++boundary.n_contact;
+          const ContactCondition<dim> &condition =
+            scene.contact_conditions()[contact[p].condition];
+          const Obstacle<dim> &obstacle = condition.obstacle;
+          if (obstacle.empty())
+            continue;
+          Tensor<1, dim> u;
+          for (unsigned int d = 0; d < dim; ++d)
+            u[d] = displacement.local_element(dim * contact[p].node + d);
+          if (condition.normal == ContactNormal::body)
+            boundary.angle =
+              std::max(boundary.angle,
+                       angle_between(contact[p].normal(),
+                                     obstacle.normal(contact[p].point,
+                                                     contact[p].normal())));
+          const double distance = std::abs(
+            depth_in(obstacle, contact[p].point + u, contact[p].normal()));
+          Farthest &so_far = farthest[contact[p].condition];
+          if (distance > so_far.distance)
+            {
+              so_far.distance            = distance;
+              so_far.normal_displacement = u * contact[p].normal();
+              so_far.normal              = contact[p].normal();
+            }
+        }
+
+    for (unsigned int i = 0; i < farthest.size(); ++i)
       {
-        auto          &boundary = result.boundaries[contact[p].condition];
-        Tensor<1, dim> u;
-        for (unsigned int d = 0; d < dim; ++d)
-          u[d] = displacement.local_element(dim * contact[p].node + d);
-        boundary.displacement = std::max(boundary.displacement, u.norm());
-        if (!state.in_contact(p))
-          continue;
-        ++boundary.n_contact;
-        const ContactCondition<dim> &condition =
-          scene.contact_conditions()[contact[p].condition];
-        const Obstacle<dim> &obstacle = condition.obstacle;
-        if (obstacle.empty())
-          continue;
-        if (condition.normal == ContactNormal::body)
-          boundary.angle =
-            std::max(boundary.angle,
-                     angle_between(
-                       contact[p].normal(),
-                       obstacle.normal(contact[p].point, contact[p].normal())));
-        const Point<dim> moved = contact[p].point + u;
-        const double     distance =
-          obstacle.gap(moved, obstacle.normal(moved, contact[p].normal()));
-        boundary.distance = std::max(boundary.distance, std::abs(distance));
+        auto &boundary = result.boundaries[i];
+        boundary.n_contact =
+          Utilities::MPI::sum(boundary.n_contact, communicator);
+        boundary.angle = Utilities::MPI::max(boundary.angle, communicator);
+        std::array<double, dim + 2> numbers{};
+        for (const auto &other :
+             Utilities::MPI::all_gather(communicator, farthest[i].numbers()))
+          if (other[0] > numbers[0])
+            numbers = other;
+        boundary.distance = numbers[0];
+        for (unsigned int node = 0;
+             node < discretization.constraints().n_owned_nodes();
+             ++node)
+          {
+            double difference = -numbers[1];
+            for (unsigned int d = 0; d < dim; ++d)
+              difference +=
+                displacement.local_element(dim * node + d) * numbers[2 + d];
+            boundary.indentation =
+              std::max(boundary.indentation, std::abs(difference));
+          }
+        boundary.indentation =
+          Utilities::MPI::max(boundary.indentation, communicator);
       }
 
     result.size         = discretization.body_size();
     result.displacement = displacement.linfty_norm();
-    for (auto &boundary : result.boundaries)
-      {
-        boundary.n_contact =
-          Utilities::MPI::sum(boundary.n_contact, communicator);
-        boundary.angle = Utilities::MPI::max(boundary.angle, communicator);
-        boundary.distance =
-          Utilities::MPI::max(boundary.distance, communicator);
-        boundary.displacement =
-          Utilities::MPI::max(boundary.displacement, communicator);
-      }
     return result;
   }
 
@@ -581,19 +624,28 @@ namespace Friction
     std::vector<std::string> warnings =
       warnings_about_regions(discretization, "last");
     // A scene with a known solution is one for mathematicians.
-    if (g.displacement > large_displacement * g.size &&
-        scene.exact_displacement() == nullptr)
-      warnings.push_back(
-        "Warning: the largest displacement is " + number(g.displacement) +
-        " in a body of size " + number(g.size) +
-        "; strains and displacements are supposed to be small here.");
+    if (scene.exact_displacement() == nullptr)
+      {
+        const double strain = mean_strain(discretization, displacement);
+        if (g.displacement > large_displacement * g.size)
+          warnings.push_back(
+            "Warning: the largest displacement is " + number(g.displacement) +
+            " in a body of size " + number(g.size) +
+            "; strains and displacements are supposed to be small here.");
+        else if (strain > large_strain)
+          warnings.push_back(
+            "Warning: strains are " + number(strain) +
+            " in the mean of the body; strains and displacements are supposed "
+            "to be small here.");
+      }
     const auto other = depth_of_other_nodes(discretization, &displacement);
     if (other.first > visible_depth * g.size)
       warnings.push_back(
         "Warning: a node of the boundary that is no contact node has gone "
         "through the surface of the obstacle, by " +
         number(other.first) + " at " + coordinates(other.second) +
-        "; is 'Contact/Boundary id' the right one?");
+        "; is 'Boundary id' of its contact section the right one, or does a "
+        "displacement or a platen push it there?");
     warn_of_loaded_pins(discretization, displacement, warnings);
     const auto &conditions = scene.contact_conditions();
     for (unsigned int i = 0; i < conditions.size(); ++i)
@@ -608,6 +660,15 @@ namespace Friction
               "towards it, and does '" +
               conditions[i].obstacle_section() +
               "/Normal' point into the obstacle?");
+          const auto between =
+            depth_between_nodes(discretization, i, displacement, state);
+          if (between.first > large_distance * g.displacement + 1e-12 * g.size)
+            warnings.push_back(
+              "Warning: between nodes" + whose +
+              " the body goes through the obstacle, by " +
+              number(between.first) + " at " + coordinates(between.second) +
+              ", where none of them touches it; the mesh is too coarse for "
+              "this obstacle, refine it there.");
           if (boundary.angle > large_angle)
             warnings.push_back(
               "Warning: nodes" + whose +
@@ -616,15 +677,19 @@ namespace Friction
               " degrees off that of the obstacle, so that forces do not obey "
               "the law of friction; set '" +
               conditions[i].section() + "/Contact normal = obstacle'.");
-          if (boundary.distance >
-              large_distance * boundary.displacement + 1e-12 * g.size)
+          // Nodes with such normals are not where the obstacle is, either.
+          else if (boundary.distance >
+                   large_distance * boundary.indentation + 1e-12 * g.size)
             warnings.push_back(
               "Warning: displaced as they are, nodes" + whose +
               " in contact are up to " + number(boundary.distance) +
-              " away from the obstacle, or inside it, at displacements of " +
-              number(boundary.displacement) +
-              "; gaps are those of the undeformed body, and displacements too "
-              "large for that.");
+              " away from the obstacle, or inside it, where the rest of the "
+              "body has moved by no more than " +
+              number(boundary.indentation) +
+              " against them in that direction; gaps are those of the "
+              "undeformed body, and displacements too large for that. Let the "
+              "body lie where it touches from the beginning, and prescribe "
+              "less.");
         }
     return warnings;
   }

@@ -19,7 +19,7 @@ namespace Friction
    * About the scene, the mesh and the contact boundary, before anything is
    * solved: what Parameters::warnings and Scene::warning() say, and
    * - where the coarse mesh is cut, see Seam, and parts that it consists of;
-   * - tractions where all displacements are prescribed;
+   * - tractions where displacements are prescribed;
    * - materials for which elements lock, or which are so far apart that
    *   rounding errors of one are the stiffness of the other;
    * - edges of cells so short, or a body so far from the origin, that
@@ -61,11 +61,13 @@ namespace Friction
       double angle = 0;
 
       /// How far a node in contact is from the obstacle when it is displaced,
-      /// outside or inside; a length.
+      /// outside or inside; a length. Nodes that no longer face it do not
+      /// count.
       double distance = 0;
 
-      /// The largest displacement, a length.
-      double displacement = 0;
+      /// How far another node of the body has moved, at most, relative to that
+      /// node and along its normal; a length.
+      double indentation = 0;
     };
 
     /// In the order of Scene::contact_conditions().
@@ -89,13 +91,15 @@ namespace Friction
   /**
    * About a solution:
    * - no cell has the material of a region, see warnings_about_regions();
-   * - displacements are not small against the body;
+   * - displacements or strains are not small;
    * - a boundary that is no contact boundary has gone into the obstacle;
    * - a pinned point bears a load;
    * and, for each of the contact boundaries,
    * - no node is in contact;
    * - normals of the body are used where they are not those of the obstacle, so
    *   that forces do not obey the law of friction;
+   * - the body goes through the obstacle between nodes of which none touches
+   *   it, by more than a tenth of the largest displacement;
    * - nodes in contact are not where the obstacle is.
    */
   template <int dim>

@@ -785,8 +785,9 @@ namespace Friction
   std::string
   Scene<dim>::warning(const double largest_coefficient) const
   {
-    // One without the other is most likely forgotten. Given friction needs no
-    // obstacle. What the first section does not have others may.
+    // One without the other is most likely forgotten. Given friction, too,
+    // acts only at nodes that may touch an obstacle, and so needs one. What the
+    // first section does not have others may.
     for (const auto &condition : contacts)
       {
         const bool is_mentioned =
@@ -801,8 +802,7 @@ namespace Friction
                  "will be no contact; if there should be, set "
                  "'Contact/Boundary "
                  "id'.";
-        if (is_mentioned && condition.obstacle.empty() &&
-            condition.friction_law != FrictionLaw::tresca)
+        if (is_mentioned && condition.obstacle.empty())
           return "Warning: there is no obstacle" +
             (condition.number == 1 ? std::string()
                                    : " for '" + condition.section() + "'") +

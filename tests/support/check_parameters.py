@@ -24,6 +24,8 @@ EXCEPTIONS = {
 def functions(text):
     """Names of the functions declared in a file, with numbers of parameters."""
     text = re.sub(r"/\*.*?\*/|//[^\n]*", "", text, flags=re.S)
+    # Commas of sentences are none.
+    text = re.sub(r'"(?:[^"\\\n]|\\.)*"', '""', text)
     for name in re.finditer(r"([A-Za-z_~]\w*)\s*\(", text):
         if text[name.end() : name.end() + 1] == '"':
             continue
