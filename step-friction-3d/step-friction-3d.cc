@@ -33,8 +33,9 @@ namespace StepFriction3d
 
   // On the first mesh the body is undeformed. A checkpoint holds the
   // refinements of a mesh and the two vectors that had been interpolated to it,
-  // in a history what the load step before has come to, and where platens are
-  // if there are any; any number of processes may have written it, and any
+  // in a later load step what the one before has come to, and where platens are
+  // (boundaries that are moved until their force is a given one) if there are
+  // any; any number of processes may have written it, and any
   // other may read it.
   //
   // The discretisation then finds the nodes that may touch
@@ -117,9 +118,10 @@ namespace StepFriction3d
   // @sect3{The forces of the obstacle}
 
   // In space, forces on a body amount to six numbers: a force, and its moment
-  // about some point, here the origin. The tangential force in the table is the
-  // norm of a sum of vectors, which cancel where the scene is symmetric, and
-  // says nothing about how much friction there is. The work of friction,
+  // about some point, here the origin. The tangential force in the last line of
+  // a run is the norm of a sum of vectors, which cancel where the scene is
+  // symmetric, and says nothing about how much friction there is. The work of
+  // friction,
   // $\omega(u)$, does: where a node slides, friction is opposite to its slip,
   // so that each of them adds $-R_T\cdot u_T=\mathcal F\tau\,|u_T|$, and nodes
   // that stick add nothing. In a later load step slip counts from the end of
@@ -175,7 +177,9 @@ namespace StepFriction3d
     text << ", moment about the origin ";
     print(moment, lever * force.norm());
     if (nest.state().has_friction())
-      text << ", work of friction " << work;
+      text << ", work of friction "
+           << (nest.scene().n_load_steps() > 1 ? "in this load step " : "")
+           << work;
     text << ".";
     return text.str();
   }

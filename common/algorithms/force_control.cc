@@ -303,8 +303,9 @@ namespace Friction
       "the forces of 'Boundary conditions/Force' cannot be reached; nearest to "
       "them " +
       text.str() +
-      ". Can contact and friction bear them, and does 'Displacement' begin in "
-      "contact?");
+      ". Can contact and friction bear them? Leave components 'free' in which "
+      "nothing bears a force, and let 'Displacement' begin in contact, with "
+      "forces not far larger than these.");
   }
 
 

@@ -346,8 +346,9 @@ namespace Friction
             ", which also lies on the contact boundary, pushes it into the "
             "obstacle by " +
             std::to_string(prescribed_value * normal - gap) +
-            ": prescribe a smaller displacement there or end the contact "
-            "boundary before that node, or set '" +
+            ": prescribe a smaller displacement there (a platen with a given "
+            "force prescribes one as well) or end the contact boundary before "
+            "that node, or set '" +
             condition.section() + "/Ignore prescribed penetration'.");
         return;
       }

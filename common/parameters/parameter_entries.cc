@@ -237,7 +237,8 @@ namespace Friction
        "",
        text,
        "3D: length of the rods, the given points being their middles; a "
-       "constant expression, infinite if empty [length]."},
+       "constant expression, infinite if empty. Only their round surface may "
+       "be touched, and not their ends [length]."},
 
       {"Boundary conditions",
        "Displacement",

@@ -407,6 +407,22 @@ namespace Friction
 
 
 
+    // Whether there is friction on one of them.
+    template <int dim>
+    bool
+    has_friction(const Scene<dim> &scene, const FreePart<dim> &part)
+    {
+      const auto &conditions = scene.contact_conditions();
+      return std::any_of(
+        conditions.begin(), conditions.end(), [&](const auto &condition) {
+          return part.boundary_ids.count(condition.boundary_id) > 0 &&
+            !condition.obstacle.empty() &&
+            condition.friction_law != FrictionLaw::none;
+        });
+    }
+
+
+
     // Whether the part has a boundary of which the force is given.
     template <int dim>
     bool
@@ -640,7 +656,10 @@ namespace Friction
     return name.str() + " is not held against " + what + ": " +
       (holding.is_driven ? "its loads push it there, and " : "") +
       "neither a displacement " +
-      (has_contact(scene, part) ? "nor contact stops it"
+      (has_contact(scene, part) ? std::string("nor contact stops it") +
+           (has_friction(scene, part)
+              ? " (friction may resist sliding, but is not relied on here)"
+              : "")
                                 : "nor an obstacle stops it") +
       (has_platen(scene, part) ? ", and a boundary with a given force does not"
                                : "") +
