@@ -13,8 +13,8 @@
 
 #include <deal.II/fe/fe_values.h>
 
-// Its headers are named after the one subject each of them has, and its folders
-// build on one another.
+// The library's headers are named after the one subject each of them has, and
+// its folders build on one another.
 #include <common/algorithms/contact_solver.h>
 #include <common/algorithms/discretization_stop.h>
 #include <common/algorithms/force_control.h>
@@ -94,11 +94,12 @@ namespace StepFriction2d
 
     // The solution on the present mesh. Besides $u$ it includes the contact
     // state: flags that say which nodes touch and which of these stick, and the
-    // nodal normal forces $\tau(p)$. They are not derived from $u$ but set by
-    // the local problems, for after a rotation to the frame of a node and back
-    // $u_n=g$ holds only up to rounding. The tractions, $R(p)/m_p$ at the nodes
-    // in contact, are what the next mesh, the estimator and ParaView get to see
-    // of the forces.
+    // nodal normal forces $\tau(p)$. The flags are set by the local problems
+    // and not read off $u$, for after a rotation to the frame of a node and
+    // back $u_n=g$ holds only up to rounding; $\tau(p)$ is the normal component
+    // of the residual there. The tractions, $R(p)/m_p$ at the nodes in contact,
+    // are what the next mesh, the estimator and ParaView get to see of the
+    // forces.
     VectorType   displacement;
     VectorType   tractions;
     ContactState state;
@@ -109,7 +110,9 @@ namespace StepFriction2d
     DiscretizationStop<dim> stop;
     RunOutput<dim>          output;
 
-    // For scenes with given forces, and with a history.
+    // For scenes with given forces: a <i>platen</i> is a part of the boundary
+    // that is moved as a whole until its reaction is the given force. And for
+    // scenes with several load steps (<code>Load steps/Times</code>).
     ForceControl<dim> force_control;
     LoadSteps<dim>    load_steps;
 
@@ -155,10 +158,10 @@ namespace StepFriction2d
   // made in either case, and p4est then refines it as it was, and distributes
   // it over as many processes as there are now. The initial guess is the
   // undeformed body without any forces, which on a coarse mesh is good enough,
-  // or what had been interpolated to this mesh when the run was interrupted. In
-  // a history <code>LoadSteps</code> says which vectors there are besides, and
-  // has friction count slip from the end of the load step before;
-  // <code>ForceControl</code> knows how stiff the body has been.
+  // or what had been interpolated to this mesh when the run was interrupted.
+  // With several load steps <code>LoadSteps</code> says which vectors there are
+  // besides, and has friction count slip from the end of the load step before;
+  // <code>ForceControl</code> gets back the stiffness that it has learnt.
   template <int dim>
   unsigned int
   ContactProblem<dim>::make_first_mesh(const Start start)
@@ -289,8 +292,8 @@ namespace StepFriction2d
     // times $m_p$ becomes the force $\tau(p)$ that friction starts with. On the
     // first mesh everything is zero, and there is no friction before the first
     // normal force. With Tresca's law (<code>Contact/Friction law =
-    // Tresca</code>) the bound <code>Contact/Friction bound</code> takes the
-    // place of $F\tau(p)$.
+    // Tresca</code>) the stress <code>Contact/Friction bound</code> times $m_p$
+    // takes the place of $F\tau(p)$.
     Timer timer;
     state = make_initial_guess(discretization, displacement, tractions);
 
@@ -443,8 +446,9 @@ namespace StepFriction2d
   // <code>make_level_records()</code> turns nodal forces into pressures, sums
   // of forces and half-widths of zones, and keeps of each cycle its increment,
   // its energy, its step length and the number of components that truncation
-  // has taken from coarse functions. The results say how to read them. From the
-  // last levels it estimates the errors of pressure, half-widths and forces.
+  // has taken from coarse functions. The results say how to read them.
+  // <code>output.add_level()</code> estimates from the last levels what the
+  // errors of pressure, half-widths and forces are.
   // With <code>Output/Forces</code> there are reactions as well: the rows of
   // prescribed degrees of freedom are still in the matrix, for $Au-f$.
   //
@@ -519,8 +523,8 @@ namespace StepFriction2d
 
         // A level without a certified solution is the end: what is wrong on
         // this mesh would only be interpolated to the next one. If the first
-        // mesh is the one that fails, a coarser one may give it a better guess
-        // to start from.
+        // mesh fails, <code>Refinement/Initial refinements</code> may be
+        // lowered: a coarser mesh is easier, and a better guess for this one.
         if (!report.converged)
           {
             output.add_failure(level, scene, report);
@@ -560,7 +564,7 @@ namespace StepFriction2d
 
         // This is the moment for a checkpoint, if the scene wants any: a mesh
         // and two vectors on it are all that the next level needs of those
-        // before, and in a history what the load step before has come to, and
+        // before, and in a later load step what the one before has come to, and
         // where the platens are if there are any. With what has been recorded
         // so far, a run continued with <code>--restart</code> ends with the
         // same files as any other.

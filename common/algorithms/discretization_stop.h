@@ -16,7 +16,8 @@ namespace Friction
   /**
    * Says when a solution is as good as its mesh: when the error of the
    * iteration is a tenth of that of the discretisation, so that going on would
-   * change the sum of both by half a percent.
+   * change the whole error, the root of the sum of both squares, by half a
+   * percent.
    *
    * The error of the discretisation is taken to be the least that the residual
    * estimator allows for, ErrorEstimate::lower_bound, and not its estimate,

@@ -33,9 +33,9 @@ namespace Friction
    * better than that: solutions on the way are solved roughly.
    *
    * A body that is not touched yet gives no resistance; steps then grow tenfold
-   * until something is met. A single position is enclosed by what has been
-   * tried, since the force grows with it, and halved where the secant method
-   * is no good.
+   * until something is met. Of a single position an interval is known from what
+   * has been tried, since the force grows with it; the interval is halved where
+   * the secant method is no good.
    */
   template <int dim>
   class ForceControl

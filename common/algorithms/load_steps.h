@@ -24,12 +24,13 @@ namespace Friction
      * to follow.
      *
      * On call the vectors are displacement and contact tractions of the step
-     * that has ended, on return guesses for the next one: what has been found,
-     * and the last change on this mesh once more, as many times as prescribed
-     * displacements change once more, or if none did, times. That may be a
-     * negative number, where loads are taken back. After the first step there
-     * is no change to repeat, and one that would have to be repeated more than
-     * four times is not. Platens are moved to where the forces of the next
+     * that has ended, on return guesses for the next one: what has been found
+     * plus a multiple of the last change on this mesh. The multiple is the next
+     * change of prescribed displacements relative to their last one or, if they
+     * did not change, the ratio of the two time steps; it is negative where
+     * loads are taken back. After the first step there is no change to repeat,
+     * and one that would have to be repeated more than four times is not.
+     * Platens are moved to where the forces of the next
      * step are expected. Collective.
      */
     void begin_next(Scene<dim>          &scene,

@@ -12,12 +12,12 @@ namespace Friction
    * Finds the next normal forces in the outer iteration of Algorithm 2.
    *
    * The plain iteration (6.11) takes those that it has found, $\tau_{k+1}=
-   * \Phi(\tau_k)$, and a damped one goes part of the way. Either converges only
-   * if $\Phi$ contracts, or overshoots by not too much. With much friction it
+   * \Psi(\tau_k)$, and a damped one goes part of the way. Either converges only
+   * if $\Psi$ contracts, or overshoots by not too much. With much friction it
    * does neither, but it does so in few directions: where a node changes from
    * slip to stick. Anderson mixing (D.G. Anderson, J. ACM 12, 1965) finds out
    * about these from the last steps: of all combinations of the last iterates
-   * it takes the one whose residual $\Phi(\tau)-\tau$ is smallest, if $\Phi$
+   * it takes the one whose residual $\Psi(\tau)-\tau$ is smallest, if $\Psi$
    * were affine, as it is while no phase changes, and then goes part of the way
    * as before.
    *
@@ -42,7 +42,7 @@ namespace Friction
      * The next point after $\tau$, which is not negative. Each process has its
      * share of the components. Collective.
      * @param given  $\tau$
-     * @param found  $\Phi(\tau)$
+     * @param found  $\Psi(\tau)$
      */
     std::vector<double> next(const std::vector<double> &given,
                              const std::vector<double> &found);

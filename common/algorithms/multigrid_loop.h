@@ -19,7 +19,8 @@ namespace Friction
   struct CycleInfo
   {
     double increment;   ///< energy norm of the increment, relative to u's
-    double energy;      ///< of the smoothed iterate
+    double energy;      ///< of the smoothed iterate that the cycle begins with;
+                        ///< with Newton's method that which a step ends with
     double step_length; ///< step length of the coarse correction
     double truncated;   ///< components held at all contact nodes
     double residual;    ///< Euclidean norm of the truncated residual; with

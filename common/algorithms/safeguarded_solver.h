@@ -31,8 +31,9 @@ namespace Friction
    *    dimensions are in lines of strong couplings: coarse functions do not
    *    follow borders of materials within coarse cells;
    * 4. where there is not much friction, contact nodes alone, if that takes no
-   *    longer than some hundreds of cycles, whatever the material; and after
-   *    it, if 3. has left it little time, 2. once more;
+   *    longer than some hundreds of cycles, whatever the material; and then,
+   *    if 2. was given up early because there was 3. to try, 2. once more, with
+   *    all its time;
    * 5. the algorithm of the settings with AlgebraicCorrection, where there is
    *    not much friction: then coarse levels are the trouble, for example
    *    because cells are short in two of three directions;
@@ -93,9 +94,8 @@ namespace Friction
      * succeeded, residual, energy and certificate are those of what is
      * returned.
      * @param accuracy  if it is positive, relative increments of this size are
-     *                  small enough for the algorithm of the settings, and its
-     * certificate is not looked at: for solutions on the way to the one that is
-     * wanted.
+     *                  small enough, whatever is tried, and certificates are
+     * not asked for: for solutions on the way to the one that is wanted.
      */
     SolverReport solve(VectorType     &u,
                        ContactState   &state,

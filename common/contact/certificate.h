@@ -23,12 +23,14 @@ namespace Friction
    *
    * A length that takes part in an alternative, a distance from the obstacle
    * or a slip, counts as the force that the node itself needs for it,
-   * $a_{nn}(p)$ times the length. So the smaller one of a force and a length is
-   * the force that is wrong, as relaxation of this node would find it. A length
-   * alone, a depth, or the slip of a node that is said to stick, is a matter of
-   * all of the contact zone, which for its size is less stiff than a node: by a
-   * factor $(m_p/m_C)^{1/(d-1)}$, with the measure $m_C$ of all nodes in
-   * contact. So it is by how much pressures are wrong if all nodes are as deep.
+   * $e^Ta(p)\,e$ times the length, with the diagonal block $a(p)$ of the
+   * stiffness and the direction $e$ of the length. So the smaller one of a
+   * force and a length is the force that is wrong, as relaxation of this node
+   * would find it. A length alone, a depth, or the slip of a node that is said
+   * to stick, is a matter of all of the contact zone, which for its size is
+   * less stiff than a node: by a factor $(m_p/m_C)^{1/(d-1)}$, with the measure
+   * $m_C$ of all nodes in contact. So it is by how much pressures are wrong if
+   * all nodes are as deep.
    */
   struct Certificate
   {
@@ -37,7 +39,7 @@ namespace Friction
     double tension         = 0; ///< $(R_n)_+$, a force that pulls
     double complementarity = 0; ///< force at a distance, $\min(-R_n, g-u_n)$
     double cone            = 0; ///< $(|R_T|-F\tau)_+$
-    double slip            = 0; ///< $|R_T+F\tau u_T/|u_T||$, where it slides
+    double slip            = 0; ///< $\min(|R_T+F\tau u_T/|u_T||, |u_T|)$
 
     /// What is not as the state of a node says: force where it is open,
     /// distance where it touches, slip where it sticks, and less friction than

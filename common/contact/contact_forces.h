@@ -37,7 +37,8 @@ namespace Friction
    * Nodal contact forces turned into a field of stresses on the contact
    * boundary, for interpolation to another mesh, for the error estimator and
    * for output: force on the body over nodal measure at the nodes that are in
-   * contact, zero at all other nodes.
+   * contact and, where the bound of friction is given, at open nodes with a
+   * positive one, zero at all others.
    *
    * @param residual  f - A u, in whose layout the result is.
    */

@@ -11,8 +11,9 @@ namespace Friction
    * stick, and with which normal force friction reckons. Together with the
    * displacement this is the state of the nonlinear iteration.
    *
-   * Contact and stick are decided by the local problems and kept as flags here,
-   * never read off the displacement again: after a rotation to the local frame
+   * Contact and stick are decided by the local problems, or by the law of
+   * Newton's method, and kept as flags here, never read off the displacement
+   * once the iteration has begun: after a rotation to the local frame
    * and back, $u_n = g$ holds only up to rounding.
    *
    * Each process has the state of its own contact nodes, and all counts are of

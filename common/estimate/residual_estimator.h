@@ -68,8 +68,8 @@ namespace Friction
    */
   struct EstimatorContact
   {
-    /// Nodal contact tractions: force on the body over nodal measure, 0 at open
-    /// nodes.
+    /// Nodal contact tractions: force on the body over nodal measure; see
+    /// contact_tractions().
     const VectorType *traction = nullptr;
 
     /// The unit normals $n(p)$, and the vectors $g(p)\,n(p)$ from the node to

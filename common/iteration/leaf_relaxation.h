@@ -11,10 +11,10 @@ namespace Friction
   /**
    * Block Gauss-Seidel on the leaf mesh for the linear problem of a step of
    * Newton's method, $(T-F\,e\,n^T)(A+\omega'')T\,v=r$: what MonotoneSmoother
-   * is without obstacle and with phases that are known. Nodes with such a term
-   * are left alone, see ContactStrip. Together with a
-   * TruncatedCorrection it is a linear multigrid cycle, which preconditions
-   * Newton's method.
+   * is without obstacle and with phases that are known. Sliding nodes, whose
+   * rows have the term with $F\,e\,n^T$, are left alone, see ContactStrip.
+   * Together with a TruncatedCorrection it is a linear multigrid cycle, which
+   * preconditions Newton's method.
    */
   template <int dim>
   class LeafRelaxation
@@ -34,7 +34,7 @@ namespace Friction
                 const std::vector<NodeValue<dim>> &slopes);
 
     /**
-     * Sweeps over all nodes that can move.
+     * Sweeps over all nodes that can move, but those with a slope.
      * @param v       truncated; its ghosts need not be valid.
      * @param r       truncated.
      * @param defect  if not null, the truncated residual on return.

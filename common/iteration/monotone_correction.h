@@ -11,7 +11,8 @@ namespace Friction
    * The `monotone` coarse correction of the thesis: the cycle of
    * TruncatedCorrection, in which every single relaxation keeps the prolonged
    * correction within bounds that make it admissible and cause no change of
-   * phase, (6.12); see Linearization::bounds(). No line search is needed.
+   * phase, (6.12); see Linearization::bounds(). In two dimensions no line
+   * search is needed; in three the energy may rise, see MonotoneMultigrid.
    *
    * The bounds of a coarse function are the tightest of the fine nodes in its
    * support; since the weights of the prolongation lie in [0,1] and sum up to

@@ -79,7 +79,8 @@ namespace Friction
                           const double      largest) const;
 
     /** The largest factor, at most @p largest, by which @p v may be scaled so
-     * that u + v does not penetrate; at least 1 if v itself does not. */
+     * that u + v does not penetrate; @p largest if nothing up to it does.
+     * Collective. */
     double admissible_length(const VectorType &v,
                              const VectorType &u,
                              const double      largest) const;

@@ -26,10 +26,11 @@ namespace Friction
    * others, and its edge matrices are those of local smoothing without
    * truncation.
    *
-   * Where cells are stretched, the leading relaxation and that of the levels
-   * have to deal with lines of strongly coupled nodes. On the levels they are
-   * relaxed together, see LineRelaxation, and so they are on the leaf mesh,
-   * before and after everything else, with half as many sweeps. Coarse
+   * Where cells are stretched, lines of strongly coupled nodes have to be
+   * relaxed together, see LineRelaxation. The leading relaxation goes node by
+   * node. So this correction relaxes the lines of the leaf mesh, before and
+   * after everything else, with half as many sweeps, and Levels::relax() those
+   * of the levels. Coarse
    * levels are worth more then: a level that has at most a third of the nodes
    * of the next finer one, of which half or more are in lines, is visited twice
    * also in a V-cycle, on four levels at most.

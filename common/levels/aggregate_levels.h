@@ -85,7 +85,8 @@ namespace Friction
    *
    * As in LevelMatrices, truncation enters the leaf blocks and never $P$:
    * $B_1=P_1^T\,T(A+\omega'')T\,P_1$, and $B_{k+1}=P_{k+1}^TB_kP_{k+1}$
-   * (levels count from the leaf mesh here). When the truncation changes at
+   * (levels count from the leaf mesh here; functions number them from 0 on).
+   * When the truncation changes at
    * some nodes, only the rows that depend on them are computed anew.
    *
    * The coarsest level is solved if it has few nodes; where no couplings are
@@ -134,6 +135,7 @@ namespace Friction
       return levels.size();
     }
 
+    /** Of the matrix $B_{k+1}$, where k is @p level. */
     unsigned int
     n_nodes(const unsigned int level) const
     {
@@ -145,7 +147,7 @@ namespace Friction
     void
     prolongate(const unsigned int k, double *fine, const double *coarse) const;
 
-    /** y = B_k x. */
+    /** $y = B_{k+1} x$. */
     void vmult(const unsigned int k, double *y, const double *x) const;
 
     std::size_t memory_consumption() const;

@@ -28,7 +28,7 @@ namespace Friction
   enum class CoarseCorrection
   {
     truncated,  ///< unconstrained on truncated functions, then a line search
-    monotone,   ///< constrained by coarse obstacles, no line search needed
+    monotone,   ///< constrained by coarse obstacles, without a line search
     aggregates, ///< as truncated, and once more on levels made of the matrix
     algebraic   ///< the truncated problem solved on the leaf mesh itself
   };

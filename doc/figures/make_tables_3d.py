@@ -227,7 +227,7 @@ def checks(runs):
     for title, name in (("O-grid", "large"), ("one hexahedron", "one-cell")):
         jac, gs = (Run(runs / directory).levels["cycles"][1:].sum()
                    for directory in (f"{name}-fixed-point", name))
-        rows.append(f" cycles of Algorithms 2 and 3 from level 1 on, {title}: "
+        rows.append(f" cycles of Algorithms 2 and 3 after the first mesh, {title}: "
                     f"{jac} and {gs}, {100 * gs / jac:.0f} percent")
     jac, gs = (sum(row[column] for row in THESIS[1:]) for column in (5, 6))
     rows.append(f"    thesis: {jac} and {gs}, {100 * gs / jac:.0f} percent")
