@@ -260,9 +260,8 @@ namespace Friction
                   warnings.push_back(
                     sentence + " in " + "xyz"[d] +
                     " direction, in which its displacement is prescribed; "
-                    "leave that component 'free', or set that of the traction "
-                    "to "
-                    "zero.");
+                    "leave that component 'free', or set that of the "
+                    "traction to zero.");
             }
     }
 

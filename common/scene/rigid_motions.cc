@@ -393,31 +393,20 @@ namespace Friction
 
 
 
+    // Whether the part has a boundary that may touch an obstacle, with friction
+    // if that is asked for.
     template <int dim>
     bool
-    has_contact(const Scene<dim> &scene, const FreePart<dim> &part)
-    {
-      const auto &conditions = scene.contact_conditions();
-      return std::any_of(
-        conditions.begin(), conditions.end(), [&](const auto &condition) {
-          return part.boundary_ids.count(condition.boundary_id) > 0 &&
-            !condition.obstacle.empty();
-        });
-    }
-
-
-
-    // Whether there is friction on one of them.
-    template <int dim>
-    bool
-    has_friction(const Scene<dim> &scene, const FreePart<dim> &part)
+    has_contact(const Scene<dim>    &scene,
+                const FreePart<dim> &part,
+                const bool           with_friction = false)
     {
       const auto &conditions = scene.contact_conditions();
       return std::any_of(
         conditions.begin(), conditions.end(), [&](const auto &condition) {
           return part.boundary_ids.count(condition.boundary_id) > 0 &&
             !condition.obstacle.empty() &&
-            condition.friction_law != FrictionLaw::none;
+            (!with_friction || condition.friction_law != FrictionLaw::none);
         });
     }
 
@@ -657,7 +646,7 @@ namespace Friction
       (holding.is_driven ? "its loads push it there, and " : "") +
       "neither a displacement " +
       (has_contact(scene, part) ? std::string("nor contact stops it") +
-           (has_friction(scene, part)
+           (has_contact(scene, part, /*with friction*/ true)
               ? " (friction may resist sliding, but is not relied on here)"
               : "")
                                 : "nor an obstacle stops it") +
