@@ -183,6 +183,10 @@ namespace Friction
 
 
 
+  template double
+  depth_in(const Obstacle<2> &, const Point<2> &, const Tensor<1, 2> &);
+  template double
+  depth_in(const Obstacle<3> &, const Point<3> &, const Tensor<1, 3> &);
   template Depth<2> depth_of_other_nodes(const Discretization<2> &,
                                          const VectorType *);
   template Depth<3> depth_of_other_nodes(const Discretization<3> &,
