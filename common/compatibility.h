@@ -9,6 +9,8 @@
 #include <deal.II/base/index_set.h>
 #include <deal.II/base/mpi.h>
 
+#include <deal.II/grid/tria.h>
+
 #if DEAL_II_VERSION_GTE(9, 7, 0)
 #  include <deal.II/numerics/solution_transfer.h>
 #else
@@ -35,6 +37,39 @@ namespace Friction
       return object.get_communicator();
 #endif
     }
+
+    /**
+     * A triangulation of one process, which all cells belong to, with the
+     * communicator of that process in place of MPI_COMM_SELF.
+     */
+    template <int dim>
+    class UndividedTriangulation : public dealii::Triangulation<dim>
+    {
+    public:
+      using MeshSmoothing = typename dealii::Triangulation<dim>::MeshSmoothing;
+
+      UndividedTriangulation(const MPI_Comm      communicator,
+                             const MeshSmoothing smoothing)
+        : dealii::Triangulation<dim>(smoothing)
+        , communicator(communicator)
+      {
+        AssertDimension(dealii::Utilities::MPI::n_mpi_processes(communicator),
+                        1);
+      }
+
+      MPI_Comm
+#if DEAL_II_VERSION_GTE(9, 7, 0)
+      get_mpi_communicator() const override
+#else
+      get_communicator() const override
+#endif
+      {
+        return communicator;
+      }
+
+    private:
+      const MPI_Comm communicator;
+    };
 
     /**
      * What functions of deal.II's Trilinos matrices take: a reference before

@@ -207,8 +207,9 @@ namespace StepFriction3d
   bool
   run(const Parameters &parameters, const Start start)
   {
-    NestedIteration<3> nest(parameters);
-    RunOutput<3>       output(
+    NestedIteration<3> nest(
+      parameters, {}, MPI_COMM_WORLD, start == Start::from_checkpoint);
+    RunOutput<3> output(
       parameters, nest.scene(), std::cout, version(), MPI_COMM_WORLD);
 
     begin(nest, output, start);

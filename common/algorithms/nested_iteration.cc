@@ -12,11 +12,13 @@ namespace Friction
   template <int dim>
   NestedIteration<dim>::NestedIteration(const Parameters    &parameters,
                                         const CellForm<dim> &form,
-                                        const MPI_Comm       communicator)
+                                        const MPI_Comm       communicator,
+                                        const bool           from_checkpoint)
     : the_parameters(parameters)
     , the_scene(parameters)
     , bilinear_form(form ? form : elasticity<dim>(the_scene.materials()))
-    , triangulation(make_triangulation<dim>(communicator))
+    , triangulation(make_triangulation<dim>(
+        communicator, from_checkpoint || the_parameters.output.checkpoint))
     , the_discretization(the_scene, *triangulation)
     , stop(the_parameters.solver)
     , force_control(the_scene)

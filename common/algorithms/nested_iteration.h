@@ -8,7 +8,7 @@
 #include <common/discretization/discretization.h>
 #include <common/estimate/residual_estimator.h>
 
-#include <deal.II/distributed/tria.h>
+#include <deal.II/grid/tria.h>
 
 #include <memory>
 
@@ -27,10 +27,12 @@ namespace Friction
   {
   public:
     /** No mesh is made yet.
-     * @param bilinear_form  if it is not that of the scene's material. */
+     * @param bilinear_form    if it is not that of the scene's material.
+     * @param from_checkpoint  whether the mesh is to be loaded. */
     explicit NestedIteration(const Parameters    &parameters,
                              const CellForm<dim> &bilinear_form = {},
-                             const MPI_Comm communicator = MPI_COMM_WORLD);
+                             const MPI_Comm       communicator = MPI_COMM_WORLD,
+                             const bool           from_checkpoint = false);
 
     /** Makes the first mesh and discretises. The initial guess is zero. */
     void begin();
@@ -152,13 +154,13 @@ namespace Friction
       return the_scene;
     }
 
-    parallel::distributed::Triangulation<dim> &
+    Triangulation<dim> &
     mesh()
     {
       return *triangulation;
     }
 
-    const parallel::distributed::Triangulation<dim> &
+    const Triangulation<dim> &
     mesh() const
     {
       return *triangulation;
@@ -234,12 +236,12 @@ namespace Friction
     Scene<dim>          the_scene;
     const CellForm<dim> bilinear_form;
 
-    std::unique_ptr<parallel::distributed::Triangulation<dim>> triangulation;
-    Discretization<dim>     the_discretization;
-    DiscretizationStop<dim> stop;
-    ForceControl<dim>       force_control;
-    LoadSteps<dim>          load_steps;
-    unsigned int            the_level = 0;
+    std::unique_ptr<Triangulation<dim>> triangulation;
+    Discretization<dim>                 the_discretization;
+    DiscretizationStop<dim>             stop;
+    ForceControl<dim>                   force_control;
+    LoadSteps<dim>                      load_steps;
+    unsigned int                        the_level = 0;
 
     VectorType   guessed_displacement, guessed_tractions;
     VectorType   u, contact_stresses;

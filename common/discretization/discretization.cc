@@ -26,18 +26,6 @@
 
 namespace Friction
 {
-  template <int dim>
-  std::unique_ptr<parallel::distributed::Triangulation<dim>>
-  make_triangulation(const MPI_Comm communicator)
-  {
-    return std::make_unique<parallel::distributed::Triangulation<dim>>(
-      communicator,
-      Triangulation<dim>::limit_level_difference_at_vertices,
-      parallel::distributed::Triangulation<dim>::construct_multigrid_hierarchy);
-  }
-
-
-
   // The element is fixed to Q1, and this is not for convenience: that a
   // correction stays admissible on finer levels needs interpolation weights
   // between zero and one, which higher degrees do not have.
@@ -369,10 +357,6 @@ namespace Friction
 
 
 
-  template std::unique_ptr<parallel::distributed::Triangulation<2>>
-  make_triangulation(const MPI_Comm);
-  template std::unique_ptr<parallel::distributed::Triangulation<3>>
-  make_triangulation(const MPI_Comm);
   template class Discretization<2>;
   template class Discretization<3>;
 } // namespace Friction

@@ -5,11 +5,10 @@
 #include <common/discretization/discrete_problem.h>
 #include <common/discretization/elasticity.h>
 #include <common/discretization/leaf_matrix.h>
+#include <common/discretization/make_triangulation.h>
 #include <common/nodes/leaf_operator.h>
 #include <common/nodes/nodal_constraints.h>
 #include <common/scene/scene.h>
-
-#include <deal.II/distributed/tria.h>
 
 #include <deal.II/dofs/dof_handler.h>
 
@@ -24,17 +23,6 @@
 namespace Friction
 {
   using namespace dealii;
-
-  /**
-   * An empty mesh of the kind that the multigrid method needs: with a hierarchy
-   * of levels on all processes, and levels of cells at a vertex that differ by
-   * one at most.
-   */
-  template <int dim>
-  std::unique_ptr<parallel::distributed::Triangulation<dim>>
-  make_triangulation(const MPI_Comm communicator = MPI_COMM_WORLD);
-
-
 
   /**
    * The discrete problem on a mesh: a scene discretised by bilinear or

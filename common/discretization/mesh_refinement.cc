@@ -3,6 +3,10 @@
 #include <common/parallel/run_clock.h>
 #include <common/scene/mesh_size.h>
 
+#include <deal.II/distributed/tria.h>
+
+#include <deal.II/lac/vector.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -26,14 +30,92 @@ namespace Friction
       v.update_ghost_values();
       return lift;
     }
+
+
+
+    // Refines a mesh of several processes, which get other cells then.
+    template <int dim>
+    void
+    refine_distributed(Triangulation<dim>              &mesh,
+                       Discretization<dim>             &discretization,
+                       const std::vector<VectorType *> &vectors)
+    {
+      Compatibility::SolutionTransfer<dim, VectorType> transfer(
+        discretization.dof_handler());
+      std::vector<double> lifts;
+      for (VectorType *v : vectors)
+        lifts.push_back(lift_above_rounding(*v));
+      transfer.prepare_for_coarsening_and_refinement(
+        std::vector<const VectorType *>(vectors.begin(), vectors.end()));
+      {
+        const RunScope part(Compatibility::mpi_communicator(mesh),
+                            RunPart::mesh);
+        mesh.execute_coarsening_and_refinement();
+      }
+      discretization.set_up();
+      for (VectorType *v : vectors)
+        *v = discretization.vector();
+      std::vector<VectorType *> interpolated = vectors;
+      transfer.interpolate(interpolated);
+      for (unsigned int i = 0; i < vectors.size(); ++i)
+        vectors[i]->add(-lifts[i]);
+    }
+
+
+
+    // Refines a mesh of one process. Each cell of the old mesh is still there,
+    // refined or not, and is given the values that it had.
+    template <int dim>
+    void
+    refine_undivided(Triangulation<dim>              &mesh,
+                     Discretization<dim>             &discretization,
+                     const std::vector<VectorType *> &vectors)
+    {
+      AssertDimension(
+        Utilities::MPI::n_mpi_processes(Compatibility::mpi_communicator(mesh)),
+        1);
+      const DoFHandler<dim> &dofs   = discretization.dof_handler();
+      const unsigned int     n_dofs = dofs.get_fe().n_dofs_per_cell();
+      std::vector<typename DoFHandler<dim>::cell_iterator> cells;
+      std::vector<double>                                  values;
+      cells.reserve(mesh.n_active_cells());
+      values.reserve(std::size_t(mesh.n_active_cells()) * vectors.size() *
+                     n_dofs);
+      Vector<double> on_cell(n_dofs);
+      for (const auto &cell : dofs.active_cell_iterators())
+        {
+          Assert(!cell->coarsen_flag_set(), ExcNotImplemented());
+          cells.push_back(cell);
+          for (const VectorType *v : vectors)
+            {
+              cell->get_dof_values(*v, on_cell);
+              values.insert(values.end(), on_cell.begin(), on_cell.end());
+            }
+        }
+      {
+        const RunScope part(Compatibility::mpi_communicator(mesh),
+                            RunPart::mesh);
+        mesh.execute_coarsening_and_refinement();
+      }
+      discretization.set_up();
+      for (VectorType *v : vectors)
+        *v = discretization.vector();
+      auto value = values.begin();
+      for (const auto &cell : cells)
+        for (VectorType *v : vectors)
+          {
+            std::copy_n(value, n_dofs, on_cell.begin());
+            value += n_dofs;
+            cell->set_dof_values_by_interpolation(on_cell, *v);
+          }
+    }
   } // namespace
 
 
 
   template <int dim>
   void
-  refine_uniformly(parallel::distributed::Triangulation<dim> &mesh,
-                   const unsigned int                         times)
+  refine_uniformly(Triangulation<dim> &mesh, const unsigned int times)
   {
     if (times == 0)
       return;
@@ -50,17 +132,12 @@ namespace Friction
 
   template <int dim>
   void
-  refine_mesh(parallel::distributed::Triangulation<dim> &mesh,
-              Discretization<dim>                       &discretization,
-              const std::vector<VectorType *>           &vectors)
+  refine_mesh(Triangulation<dim>              &mesh,
+              Discretization<dim>             &discretization,
+              const std::vector<VectorType *> &vectors)
   {
     const MPI_Comm communicator = Compatibility::mpi_communicator(mesh);
-    const RunScope transfer_part(communicator, RunPart::transfer);
-    Compatibility::SolutionTransfer<dim, VectorType> transfer(
-      discretization.dof_handler());
-    std::vector<double> lifts;
-    for (VectorType *v : vectors)
-      lifts.push_back(lift_above_rounding(*v));
+    const RunScope part(communicator, RunPart::transfer);
     mesh.prepare_coarsening_and_refinement();
 
     // Now it is known what the next mesh will be.
@@ -79,31 +156,21 @@ namespace Friction
       Utilities::MPI::max(deepest, communicator),
       communicator);
 
-    transfer.prepare_for_coarsening_and_refinement(
-      std::vector<const VectorType *>(vectors.begin(), vectors.end()));
-    {
-      const RunScope mesh_part(communicator, RunPart::mesh);
-      mesh.execute_coarsening_and_refinement();
-    }
-    discretization.set_up();
-    for (VectorType *v : vectors)
-      *v = discretization.vector();
-    std::vector<VectorType *> interpolated = vectors;
-    transfer.interpolate(interpolated);
-    for (unsigned int i = 0; i < vectors.size(); ++i)
-      vectors[i]->add(-lifts[i]);
+    if (dynamic_cast<parallel::distributed::Triangulation<dim> *>(&mesh) !=
+        nullptr)
+      refine_distributed(mesh, discretization, vectors);
+    else
+      refine_undivided(mesh, discretization, vectors);
   }
 
 
 
-  template void refine_uniformly(parallel::distributed::Triangulation<2> &,
-                                 const unsigned int);
-  template void refine_uniformly(parallel::distributed::Triangulation<3> &,
-                                 const unsigned int);
-  template void refine_mesh(parallel::distributed::Triangulation<2> &,
+  template void refine_uniformly(Triangulation<2> &, const unsigned int);
+  template void refine_uniformly(Triangulation<3> &, const unsigned int);
+  template void refine_mesh(Triangulation<2> &,
                             Discretization<2> &,
                             const std::vector<VectorType *> &);
-  template void refine_mesh(parallel::distributed::Triangulation<3> &,
+  template void refine_mesh(Triangulation<3> &,
                             Discretization<3> &,
                             const std::vector<VectorType *> &);
 } // namespace Friction

@@ -3,7 +3,7 @@
 
 #include <common/discretization/discretization.h>
 
-#include <deal.II/distributed/tria.h>
+#include <deal.II/grid/tria.h>
 
 #include <vector>
 
@@ -14,8 +14,7 @@ namespace Friction
    * memory for that, see check_that_mesh_fits(). Collective.
    */
   template <int dim>
-  void refine_uniformly(parallel::distributed::Triangulation<dim> &mesh,
-                        const unsigned int                         times);
+  void refine_uniformly(Triangulation<dim> &mesh, const unsigned int times);
 
   /**
    * Refines the cells of @p mesh that are flagged, sets up @p discretization
@@ -27,9 +26,9 @@ namespace Friction
    *                 return with the layout of the new one.
    */
   template <int dim>
-  void refine_mesh(parallel::distributed::Triangulation<dim> &mesh,
-                   Discretization<dim>                       &discretization,
-                   const std::vector<VectorType *>           &vectors);
+  void refine_mesh(Triangulation<dim>              &mesh,
+                   Discretization<dim>             &discretization,
+                   const std::vector<VectorType *> &vectors);
 } // namespace Friction
 
 #endif

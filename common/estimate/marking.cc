@@ -19,9 +19,8 @@ namespace Friction
 
     template <int dim>
     double
-    largest_error(
-      const parallel::distributed::Triangulation<dim> &triangulation,
-      const Vector<float>                             &cell_errors)
+    largest_error(const Triangulation<dim> &triangulation,
+                  const Vector<float>      &cell_errors)
     {
       AssertDimension(cell_errors.size(), triangulation.n_active_cells());
 
@@ -39,9 +38,9 @@ namespace Friction
 
     template <int dim>
     unsigned int
-    mark_above(parallel::distributed::Triangulation<dim> &triangulation,
-               const Vector<float>                       &cell_errors,
-               const double                               threshold)
+    mark_above(Triangulation<dim>  &triangulation,
+               const Vector<float> &cell_errors,
+               const double         threshold)
     {
       unsigned int n_marked = 0;
       if (threshold > 0.)
@@ -61,9 +60,9 @@ namespace Friction
 
   template <int dim>
   unsigned int
-  mark_by_maximum(parallel::distributed::Triangulation<dim> &triangulation,
-                  const Vector<float>                       &cell_errors,
-                  const double                               theta)
+  mark_by_maximum(Triangulation<dim>  &triangulation,
+                  const Vector<float> &cell_errors,
+                  const double         theta)
   {
     Assert(theta > 0. && theta <= 1., ExcMessage("theta must be in (0,1]."));
     return mark_above(triangulation,
@@ -76,9 +75,9 @@ namespace Friction
 
   template <int dim>
   unsigned int
-  mark_bulk(parallel::distributed::Triangulation<dim> &triangulation,
-            const Vector<float>                       &cell_errors,
-            const double                               theta)
+  mark_bulk(Triangulation<dim>  &triangulation,
+            const Vector<float> &cell_errors,
+            const double         theta)
   {
     Assert(theta > 0. && theta <= 1., ExcMessage("theta must be in (0,1]."));
 
@@ -116,19 +115,13 @@ namespace Friction
 
 
   template unsigned int
-  mark_by_maximum<2>(parallel::distributed::Triangulation<2> &,
-                     const Vector<float> &,
-                     const double);
+  mark_by_maximum<2>(Triangulation<2> &, const Vector<float> &, const double);
   template unsigned int
-  mark_by_maximum<3>(parallel::distributed::Triangulation<3> &,
-                     const Vector<float> &,
-                     const double);
-  template unsigned int mark_bulk<2>(parallel::distributed::Triangulation<2> &,
-                                     const Vector<float> &,
-                                     const double);
-  template unsigned int mark_bulk<3>(parallel::distributed::Triangulation<3> &,
-                                     const Vector<float> &,
-                                     const double);
+  mark_by_maximum<3>(Triangulation<3> &, const Vector<float> &, const double);
+  template unsigned int
+  mark_bulk<2>(Triangulation<2> &, const Vector<float> &, const double);
+  template unsigned int
+  mark_bulk<3>(Triangulation<3> &, const Vector<float> &, const double);
 
 
 

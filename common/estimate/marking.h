@@ -4,7 +4,7 @@
 #include <common/contact/contact_state.h>
 #include <common/discretization/discretization.h>
 
-#include <deal.II/distributed/tria.h>
+#include <deal.II/grid/tria.h>
 
 #include <deal.II/lac/vector.h>
 
@@ -22,10 +22,9 @@ namespace Friction
    * @param theta       between 0 and 1; smaller values mark more cells.
    */
   template <int dim>
-  unsigned int mark_by_maximum(
-    dealii::parallel::distributed::Triangulation<dim> &triangulation,
-    const dealii::Vector<float>                       &cell_errors,
-    const double                                       theta);
+  unsigned int mark_by_maximum(dealii::Triangulation<dim>  &triangulation,
+                               const dealii::Vector<float> &cell_errors,
+                               const double                 theta);
 
   /**
    * Set the refinement flag of the cells with the largest errors, as few as
@@ -34,10 +33,9 @@ namespace Friction
    * mark_by_maximum().
    */
   template <int dim>
-  unsigned int
-  mark_bulk(dealii::parallel::distributed::Triangulation<dim> &triangulation,
-            const dealii::Vector<float>                       &cell_errors,
-            const double                                       theta);
+  unsigned int mark_bulk(dealii::Triangulation<dim>  &triangulation,
+                         const dealii::Vector<float> &cell_errors,
+                         const double                 theta);
 
   /**
    * Sets the refinement flag of every cell at the boundary that has a vertex in

@@ -3,11 +3,14 @@
 #include <common/output/manifest.h>
 #include <common/parallel/collective_error.h>
 
+#include <deal.II/distributed/tria.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <type_traits>
 
 namespace Friction
 {
@@ -117,6 +120,25 @@ namespace Friction
     private:
       const fs::path path;
     };
+
+
+
+    // The mesh of a checkpoint, which make_triangulation() has made for that.
+    template <int dim, typename Mesh>
+    auto &
+    saved_mesh(Mesh &mesh)
+    {
+      using Distributed = parallel::distributed::Triangulation<dim>;
+      auto *const distributed =
+        dynamic_cast<std::conditional_t<std::is_const<Mesh>::value,
+                                        const Distributed,
+                                        Distributed> *>(&mesh);
+      AssertThrow(
+        distributed != nullptr,
+        ExcMessage("Checkpoints need a mesh that make_triangulation() "
+                   "has made for checkpoints."));
+      return *distributed;
+    }
   } // namespace
 
 
@@ -140,13 +162,13 @@ namespace Friction
 
   template <int dim>
   void
-  Checkpoints::save(
-    const unsigned int                               level,
-    const std::vector<char>                         &record,
-    const parallel::distributed::Triangulation<dim> &triangulation,
-    const DoFHandler<dim>                           &dof_handler,
-    const std::vector<const VectorType *>           &vectors) const
+  Checkpoints::save(const unsigned int                     level,
+                    const std::vector<char>               &record,
+                    const DoFHandler<dim>                 &dof_handler,
+                    const std::vector<const VectorType *> &vectors) const
   {
+    const auto &triangulation =
+      saved_mesh<dim>(dof_handler.get_triangulation());
     const fs::path    part = directory.file(prefix + unfinished);
     const std::string sentence =
       "The checkpoint '" + path(level) + "' cannot be written";
@@ -297,11 +319,11 @@ namespace Friction
 
   template <int dim>
   void
-  Checkpoints::load_mesh(
-    const unsigned int                         level,
-    parallel::distributed::Triangulation<dim> &triangulation) const
+  Checkpoints::load_mesh(const unsigned int  level,
+                         Triangulation<dim> &triangulation) const
   {
-    const fs::path    mesh     = fs::path(path(level)) / "mesh";
+    auto             &distributed_mesh = saved_mesh<dim>(triangulation);
+    const fs::path    mesh             = fs::path(path(level)) / "mesh";
     const std::string sentence = "The mesh in the checkpoint '" + path(level) +
       "' cannot be read, or belongs to another coarse mesh.";
 
@@ -312,7 +334,7 @@ namespace Friction
         throw InputError(sentence);
     });
     together(
-      communicator, sentence, [&]() { triangulation.load(mesh.string()); });
+      communicator, sentence, [&]() { distributed_mesh.load(mesh.string()); });
   }
 
 
@@ -401,22 +423,18 @@ namespace Friction
   template void
   Checkpoints::save(const unsigned int,
                     const std::vector<char> &,
-                    const parallel::distributed::Triangulation<2> &,
                     const DoFHandler<2> &,
                     const std::vector<const VectorType *> &) const;
   template void
   Checkpoints::save(const unsigned int,
                     const std::vector<char> &,
-                    const parallel::distributed::Triangulation<3> &,
                     const DoFHandler<3> &,
                     const std::vector<const VectorType *> &) const;
 
-  template void
-  Checkpoints::load_mesh(const unsigned int,
-                         parallel::distributed::Triangulation<2> &) const;
-  template void
-  Checkpoints::load_mesh(const unsigned int,
-                         parallel::distributed::Triangulation<3> &) const;
+  template void Checkpoints::load_mesh(const unsigned int,
+                                       Triangulation<2> &) const;
+  template void Checkpoints::load_mesh(const unsigned int,
+                                       Triangulation<3> &) const;
 
   template void Checkpoints::load_vectors(const DoFHandler<2> &,
                                           std::vector<VectorType *>);

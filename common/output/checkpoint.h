@@ -3,7 +3,7 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <deal.II/distributed/tria.h>
+#include <deal.II/grid/tria.h>
 
 #include <deal.II/dofs/dof_handler.h>
 
@@ -61,15 +61,14 @@ namespace Friction
      *
      * @param level    the level that is to be solved next.
      * @param record   that of the first process is written.
-     * @param vectors  on the mesh of that level.
+     * @param dof_handler, vectors  on the mesh of that level, which
+     *   make_triangulation() has made for checkpoints.
      */
     template <int dim>
-    void
-    save(const unsigned int                                       level,
-         const std::vector<char>                                 &record,
-         const dealii::parallel::distributed::Triangulation<dim> &triangulation,
-         const dealii::DoFHandler<dim>                           &dof_handler,
-         const std::vector<const VectorType *> &vectors) const;
+    void save(const unsigned int                     level,
+              const std::vector<char>               &record,
+              const dealii::DoFHandler<dim>         &dof_handler,
+              const std::vector<const VectorType *> &vectors) const;
 
     /**
      * The last checkpoint that is as it was written. Throws an InputError if
@@ -81,12 +80,12 @@ namespace Friction
     std::vector<char> record(const unsigned int level) const;
 
     /**
-     * Refine a coarse mesh, which must be the one that the mesh was made from.
+     * Refine a coarse mesh, which must be the one that the mesh was made from,
+     * and which make_triangulation() has made for checkpoints.
      */
     template <int dim>
-    void load_mesh(
-      const unsigned int                                 level,
-      dealii::parallel::distributed::Triangulation<dim> &triangulation) const;
+    void load_mesh(const unsigned int          level,
+                   dealii::Triangulation<dim> &triangulation) const;
 
     /**
      * Read the vectors, as many as were saved. To be called once after

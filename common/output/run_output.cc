@@ -424,7 +424,7 @@ namespace Friction
   // of.
   template <int dim>
   std::pair<double, unsigned int>
-  RunOutput<dim>::fingerprint(const Triangulation &triangulation)
+  RunOutput<dim>::fingerprint(const Triangulation<dim> &triangulation)
   {
     double sum = 0;
     Hash   hash;
@@ -453,10 +453,9 @@ namespace Friction
   {
     if (!parameters.output.checkpoint)
       return;
-    const RunScope part(communicator, RunPart::records);
-    const auto    &dof_handler = discretization.dof_handler();
-    const auto    &triangulation =
-      dynamic_cast<const Triangulation &>(dof_handler.get_triangulation());
+    const RunScope            part(communicator, RunPart::records);
+    const auto               &dof_handler   = discretization.dof_handler();
+    const auto               &triangulation = dof_handler.get_triangulation();
     const unsigned int        load_step  = discretization.scene().load_step();
     const std::vector<double> of_platens = platens.checkpoint_numbers();
 
@@ -476,7 +475,6 @@ namespace Friction
     const std::string bytes = record.str();
     checkpoints.save(next_level,
                      std::vector<char>(bytes.begin(), bytes.end()),
-                     triangulation,
                      dof_handler,
                      {vectors.begin(), vectors.end()});
   }
@@ -497,7 +495,7 @@ namespace Friction
 
   template <int dim>
   typename RunOutput<dim>::Resumption
-  RunOutput<dim>::load_checkpoint(Triangulation &triangulation)
+  RunOutput<dim>::load_checkpoint(Triangulation<dim> &triangulation)
   {
     const Checkpoints::Last last  = checkpoints.find_last();
     const unsigned int      level = last.level;

@@ -33,8 +33,6 @@ namespace Friction
   class RunOutput
   {
   public:
-    using Triangulation = parallel::distributed::Triangulation<dim>;
-
     /**
      * Creates the output directory, so that a run which cannot write anything
      * fails in its first second and not after its last level, and locks it.
@@ -151,7 +149,7 @@ namespace Friction
      * run has already gone as far as the parameters want it to. The vectors are
      * read with Checkpoints::load_vectors().
      */
-    Resumption load_checkpoint(Triangulation &triangulation);
+    Resumption load_checkpoint(Triangulation<dim> &triangulation);
 
     /// What has been recorded of each level, by this run and by the one that it
     /// continues.
@@ -160,7 +158,7 @@ namespace Friction
   private:
     /// Numbers that change if the coarse mesh does.
     static std::pair<double, unsigned int>
-    fingerprint(const Triangulation &triangulation);
+    fingerprint(const Triangulation<dim> &triangulation);
 
     /// What an earlier run has left, if this one began with the coarse mesh.
     void remove_other_run();

@@ -130,11 +130,10 @@ namespace Friction
     // A platen gives way.
     template <int dim>
     void
-    warn_of_contradictions(
-      const parallel::distributed::Triangulation<dim> &mesh,
-      const Scene<dim>                                &scene,
-      const double                                     size,
-      std::vector<std::string>                        &warnings)
+    warn_of_contradictions(const Triangulation<dim> &mesh,
+                           const Scene<dim>         &scene,
+                           const double              size,
+                           std::vector<std::string> &warnings)
     {
       using Prescribed = std::pair<types::boundary_id, double>;
       std::map<std::pair<unsigned int, unsigned int>, Prescribed> prescribed;
@@ -431,9 +430,7 @@ namespace Friction
                     const Parameters          &parameters)
   {
     const Scene<dim> &scene = discretization.scene();
-    const auto       &mesh =
-      dynamic_cast<const parallel::distributed::Triangulation<dim> &>(
-        discretization.dof_handler().get_triangulation());
+    const auto       &mesh  = discretization.dof_handler().get_triangulation();
     const MPI_Comm communicator = discretization.constraints().communicator();
 
     // What is not a number in a vertex of this mesh is to be known before

@@ -14,7 +14,7 @@ namespace Friction
   enum class RunPart
   {
     start,    ///< MPI, parameters, and all that belongs to no other part
-    mesh,     ///< making and refining it: deal.II and p4est
+    mesh,     ///< making and refining it: deal.II, p4est
     dofs,     ///< degrees of freedom, their numbers, hanging nodes: deal.II
     transfer, ///< of displacements and tractions to the next mesh
     contact,  ///< nodal constraints and the contact boundary

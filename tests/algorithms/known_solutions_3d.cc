@@ -49,9 +49,7 @@ namespace test_known_solutions_3d
   // distorted as well, and refined in places: hanging nodes on faces and edges,
   // in the body and on the contact boundary, and two levels of them.
   void
-  make_mesh(const Scene<3>                          &scene,
-            const Patch                             &patch,
-            parallel::distributed::Triangulation<3> &mesh)
+  make_mesh(const Scene<3> &scene, const Patch &patch, Triangulation<3> &mesh)
   {
     scene.make_coarse_mesh(mesh);
     const double angle = patch.angle * numbers::PI / 180., c = std::cos(angle),

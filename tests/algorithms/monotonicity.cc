@@ -166,14 +166,14 @@ namespace test_monotonicity
       return Av;
     }
 
-    Random                                                     random;
-    const Parameters                                           parameters;
-    const Scene<dim>                                           scene;
-    std::unique_ptr<parallel::distributed::Triangulation<dim>> mesh;
-    Discretization<dim>                                        discretization;
-    bool                converged = false;
-    double              length    = 0;
-    std::vector<double> normal_forces;
+    Random                              random;
+    const Parameters                    parameters;
+    const Scene<dim>                    scene;
+    std::unique_ptr<Triangulation<dim>> mesh;
+    Discretization<dim>                 discretization;
+    bool                                converged = false;
+    double                              length    = 0;
+    std::vector<double>                 normal_forces;
   };
 
 

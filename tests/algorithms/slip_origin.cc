@@ -85,7 +85,7 @@ namespace test_slip_origin
   // With some cells refined, whatever process they belong to.
   template <int dim>
   void
-  refine_some(parallel::distributed::Triangulation<dim> &mesh)
+  refine_some(Triangulation<dim> &mesh)
   {
     mesh.refine_global(1);
     for (const auto &cell : mesh.active_cell_iterators())

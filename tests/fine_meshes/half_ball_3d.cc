@@ -181,9 +181,9 @@ namespace test_half_ball_3d
     }
 
   private:
-    const Parameters                                         parameters;
-    const Scene<3>                                           scene;
-    std::unique_ptr<parallel::distributed::Triangulation<3>> mesh;
+    const Parameters                  parameters;
+    const Scene<3>                    scene;
+    std::unique_ptr<Triangulation<3>> mesh;
   };
 
 

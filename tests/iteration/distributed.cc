@@ -173,14 +173,14 @@ namespace test_distributed
       return *level_hierarchy;
     }
 
-    const Scene<dim>                                           scene;
-    std::unique_ptr<parallel::distributed::Triangulation<dim>> mesh;
-    Discretization<dim>                                        discretization;
-    std::unique_ptr<LevelHierarchy<dim>>                       level_hierarchy;
-    std::vector<Point<dim>>                                    points;
-    std::map<Key<dim>, unsigned int>                           leaf_nodes;
-    std::vector<std::vector<Point<dim>>>                       level_points;
-    std::vector<std::map<Key<dim>, unsigned int>>              level_nodes;
+    const Scene<dim>                              scene;
+    std::unique_ptr<Triangulation<dim>>           mesh;
+    Discretization<dim>                           discretization;
+    std::unique_ptr<LevelHierarchy<dim>>          level_hierarchy;
+    std::vector<Point<dim>>                       points;
+    std::map<Key<dim>, unsigned int>              leaf_nodes;
+    std::vector<std::vector<Point<dim>>>          level_points;
+    std::vector<std::map<Key<dim>, unsigned int>> level_nodes;
   };
 
 

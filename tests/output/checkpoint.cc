@@ -10,6 +10,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <deal.II/distributed/tria.h>
+
 #include <deal.II/dofs/dof_tools.h>
 
 #include <deal.II/fe/fe_q.h>
@@ -183,7 +185,6 @@ namespace test_checkpoint
       "record of " + std::to_string(mesh.n_global_active_cells()) + " cells";
     checkpoints.save(level,
                      std::vector<char>(text.begin(), text.end()),
-                     mesh,
                      dof_handler,
                      {&u, &zero});
   }

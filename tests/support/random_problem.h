@@ -126,9 +126,9 @@ namespace Tests
     unsigned int
     n_hanging_with_truncated_master(const Truncation<dim> &truncation) const;
 
-    const Scene<dim>                                           scene;
-    std::unique_ptr<parallel::distributed::Triangulation<dim>> mesh;
-    Discretization<dim>                                        discretization;
+    const Scene<dim>                    scene;
+    std::unique_ptr<Triangulation<dim>> mesh;
+    Discretization<dim>                 discretization;
 
   private:
     std::unique_ptr<LevelHierarchy<dim>> level_hierarchy;
