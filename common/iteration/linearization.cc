@@ -1,4 +1,5 @@
 #include <common/iteration/linearization.h>
+#include <common/parallel/owned_values.h>
 
 #include <algorithm>
 #include <cmath>
@@ -123,6 +124,21 @@ namespace Friction
 
   template <int dim>
   void
+  Linearization<dim>::hold(const std::vector<unsigned int> &contact_nodes,
+                           const Iterate                   &x)
+  {
+    const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
+    for (const unsigned int p : contact_nodes)
+      current.set(p,
+                  current.projector(p, !x.state.in_contact(p), false),
+                  zero_block<dim>());
+    current.exchange();
+  }
+
+
+
+  template <int dim>
+  void
   Linearization<dim>::linearize_residual(VectorType &r, const Iterate &x) const
   {
     const ContactBoundary<dim> &contact = problem.contact;
@@ -144,6 +160,29 @@ namespace Friction
                     node.frame[t][d];
           }
     truncation().apply(r.begin());
+  }
+
+
+
+  template <int dim>
+  void
+  Linearization<dim>::linearized_defect(VectorType       &defect,
+                                        const VectorType &r,
+                                        const VectorType &v) const
+  {
+    const PhaseScope phase(problem.communicator(), SolverPhase::line_search);
+    problem.stiffness.vmult(defect, v);
+    scale_owned(defect, -1.);
+    add_owned(defect, 1., r);
+    for (const unsigned int node : truncation().changed_nodes())
+      if (dim * node < v.locally_owned_size())
+        {
+          const NodeValue<dim> image = times<dim>(
+            truncation().curvature(node).data(), v.begin() + dim * node);
+          for (unsigned int d = 0; d < dim; ++d)
+            defect.local_element(dim * node + d) -= image[d];
+        }
+    truncation().apply(defect.begin());
   }
 
 

@@ -58,9 +58,19 @@ namespace Friction
       return current.truncation();
     }
 
+    /** Has contact nodes of this process, which slide, stick in the linearised
+     * problem, until the next update(). Collective. */
+    void hold(const std::vector<unsigned int> &contact_nodes, const Iterate &x);
+
     /** The truncated residual of the linearised problem,
      * r := T (f - A u - omega'(u)). */
     void linearize_residual(VectorType &r, const Iterate &x) const;
+
+    /** What is left of it after a correction,
+     * defect := T (r - (A + omega'') v). Collective. */
+    void linearized_defect(VectorType       &defect,
+                           const VectorType &r,
+                           const VectorType &v) const;
 
     /**
      * Cartesian bounds within which a correction of the iterate is admissible

@@ -1,7 +1,19 @@
 #include <common/iteration/monotone_multigrid.h>
+#include <common/parallel/owned_values.h>
+#include <common/parallel/reductions.h>
+
+#include <array>
+#include <vector>
 
 namespace Friction
 {
+  // When a correction is corrected once more: after a step shorter than this
+  // part of it, if more than this share of the nodes in contact would reverse
+  // their slip.
+  constexpr double shortened = .75, many_of_all = .1;
+
+
+
   template <int dim>
   MonotoneMultigrid<dim>::MonotoneMultigrid(
     const TrescaFunctional<dim> &functional,
@@ -60,6 +72,7 @@ namespace Friction
   MonotoneMultigrid<dim>::begin(Iterate &x)
   {
     step_control->begin();
+    last_length = 1.;
     x.forget_step();
     smoother->forward(x, smoothing_steps, /*trust first normal forces =*/true);
   }
@@ -75,13 +88,53 @@ namespace Friction
     linearization->linearize_residual(r, x);
     correction->apply(v, r);
     step_control->improve(v, x, r, linearization->truncation());
+    correct_again(x);
 
     x.begin_step();
-    const double length = step_control->advance(x, v);
+    last_length = step_control->advance(x, v);
     smoother->backward(x, smoothing_steps);
     smoother->forward(x, smoothing_steps);
     x.end_step();
-    return length;
+    return last_length;
+  }
+
+
+
+  // A sliding node that would have to reverse its slip comes to rest, see
+  // LineSearch. The correction has been computed as if it went on, and if these
+  // are many nodes side by side, what is left has next to no sense: the body
+  // has moved, its boundary stays, and the line search finds but a short step,
+  // again and again. This is how a load step begins in which loads are turned:
+  // what slid one way sticks. So in later load steps, if the last step was a
+  // short one, and there are many such nodes, they are held where they come to
+  // rest, which is a part of the correction, and the rest of it is corrected
+  // once more. (From nothing at all, with phases that mean nothing, this makes
+  // things worse.)
+  template <int dim>
+  void
+  MonotoneMultigrid<dim>::correct_again(const Iterate &x)
+  {
+    if (problem().previous_displacement == nullptr ||
+        last_length >= shortened || !x.state.has_friction() ||
+        !step_control->finds_length())
+      return;
+    const std::vector<unsigned int> reversing =
+      energy->reversing_nodes(v, x.u, x.state);
+    std::array<double, 2> numbers = {{1. * reversing.size(), 0.}};
+    for (unsigned int p = 0; p < x.state.size(); ++p)
+      numbers[1] += x.state.in_contact(p);
+    numbers = sum_over_processes(numbers, problem().communicator());
+    if (numbers[0] <= many_of_all * numbers[1])
+      return;
+
+    energy->stop(v, x.u, reversing);
+    linearization->hold(reversing, x);
+    correction->update(*linearization, x);
+    VectorType defect(r), rest(v);
+    linearization->linearized_defect(defect, r, v);
+    correction->apply(rest, defect);
+    add_owned(v, 1., rest);
+    step_control->replace(v);
   }
 
 

@@ -103,7 +103,11 @@ namespace Friction
     StepControl<dim>            *step_control;
     unsigned int                 smoothing_steps;
 
+    double last_length = 1.;
+
     VectorType r, v;
+
+    void correct_again(const Iterate &x);
   };
 } // namespace Friction
 

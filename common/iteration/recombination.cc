@@ -70,8 +70,8 @@ namespace Friction
       }
     std::vector<const VectorType *> basis = {&v}, images = {&Av};
 
-    // Steps in the free subspace, up to the rounding of the iterates
-    // themselves.
+    // Which steps are in the free subspace, up to the rounding of the iterates
+    // themselves?
     const MPI_Comm      comm   = problem.communicator();
     const unsigned int  n_dofs = v.locally_owned_size();
     std::vector<double> deviations(1 + steps.size(), 0.);
@@ -88,11 +88,22 @@ namespace Friction
                 std::max(deviations[1 + i], std::abs(Ts[d] - s[d]));
           }
     max_over_processes(deviations, comm);
+    std::deque<VectorType> projected, their_images;
     for (unsigned int i = 0; i < steps.size(); ++i)
       if (deviations[1 + i] <= deviations[0])
         {
           basis.push_back(steps[i]);
           images.push_back(products[i]);
+        }
+      else if (problem.previous_displacement != nullptr)
+        {
+          projected.push_back(*steps[i]);
+          truncation.apply(projected.back().begin());
+          their_images.emplace_back();
+          their_images.back().reinit(v, true);
+          problem.stiffness.vmult(their_images.back(), projected.back());
+          basis.push_back(&projected.back());
+          images.push_back(&their_images.back());
         }
     const unsigned int n = basis.size();
     if (n == 1)

@@ -20,7 +20,9 @@ namespace Friction
    * steps they are differences of residuals that have been computed anyway.
    *
    * A previous step that does not lie in the present free subspace (because a
-   * phase has changed) is left out, so that phases are never disturbed; and the
+   * phase has changed) is left out, so that phases are never disturbed. In a
+   * later load step, where most phases are right from the beginning, it is
+   * truncated instead, and its product with the matrix is computed anew. The
    * result is but a direction for the line search that follows, so that the
    * energy still cannot increase.
    */

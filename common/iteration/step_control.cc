@@ -79,6 +79,16 @@ namespace Friction
 
 
 
+  template <int dim>
+  void
+  LineSearch<dim>::replace(const VectorType &v)
+  {
+    const PhaseScope phase(problem.communicator(), SolverPhase::line_search);
+    problem.stiffness.vmult(Av, v);
+  }
+
+
+
   // The correction keeps its size, and lengths are all relative to it: scaling
   // it would be one more pass over a vector.
   template <int dim>

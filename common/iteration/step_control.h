@@ -35,6 +35,20 @@ namespace Friction
                          const VectorType      &r,
                          const Truncation<dim> &truncation);
 
+    /** Whether corrections may be any directions: how far to go is found
+     * here. */
+    virtual bool
+    finds_length() const
+    {
+      return false;
+    }
+
+    /** @p v, of which the caller has made something else than improve() has,
+     * will be the correction; if it may be any direction. Collective. */
+    virtual void
+    replace(const VectorType & /*v*/)
+    {}
+
     /**
      * Adds to x.u as much of the correction @p v as is good; v is changed.
      * Collective.
@@ -91,6 +105,14 @@ namespace Friction
                  const Iterate         &x,
                  const VectorType      &r,
                  const Truncation<dim> &truncation) override;
+
+    bool
+    finds_length() const override
+    {
+      return true;
+    }
+
+    void replace(const VectorType &v) override;
 
     double advance(Iterate &x, VectorType &v) override;
 

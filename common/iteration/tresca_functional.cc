@@ -25,6 +25,32 @@ namespace Friction
           std::abs(v.local_element(dim * node.node + d));
       return 2e-15 * size;
     }
+
+
+
+    // By how many times its slip in u a sliding node would go too far back with
+    // v, or zero. What is prescribed does not change, but takes part in the
+    // slip.
+    template <int dim>
+    double
+    excess_of_reversal(const ContactNode<dim> &node,
+                       const VectorType       &v,
+                       const VectorType       &u)
+    {
+      const auto a  = slip_components<dim>(node, u);
+      const auto b  = tangential_components<dim>(node, v);
+      double     uu = 0, uv = 0, free = 0;
+      for (unsigned int t = 0; t < dim - 1; ++t)
+        {
+          uu += a[t] * a[t];
+          if (t < node.n_free_tangents)
+            {
+              uv += a[t] * b[t];
+              free += a[t] * a[t];
+            }
+        }
+      return (uu + uv >= 0 || free == 0) ? 0. : -(uu + uv) / free;
+    }
   } // namespace
 
 
@@ -131,40 +157,52 @@ namespace Friction
 
 
   template <int dim>
+  std::vector<unsigned int>
+  TrescaFunctional<dim>::reversing_nodes(const VectorType   &v,
+                                         const VectorType   &u,
+                                         const ContactState &state) const
+  {
+    std::vector<unsigned int> nodes;
+    if (state.has_friction())
+      for (unsigned int p = 0; p < problem.contact.size(); ++p)
+        if (state.normal_force(p) > 0 && !state.sticks(p) &&
+            excess_of_reversal(problem.contact[p], v, u) > 0)
+          nodes.push_back(p);
+    return nodes;
+  }
+
+
+
+  template <int dim>
+  void
+  TrescaFunctional<dim>::stop(
+    VectorType                      &v,
+    const VectorType                &u,
+    const std::vector<unsigned int> &contact_nodes) const
+  {
+    for (const unsigned int p : contact_nodes)
+      {
+        const ContactNode<dim> &node   = problem.contact[p];
+        const auto              slip   = slip_components<dim>(node, u);
+        const double            excess = excess_of_reversal(node, v, u);
+        for (unsigned int t = 1; t <= node.n_free_tangents; ++t)
+          for (unsigned int d = 0; d < dim; ++d)
+            v.local_element(dim * node.node + d) +=
+              excess * slip[t - 1] * node.frame[t][d];
+      }
+  }
+
+
+
+  template <int dim>
   unsigned int
   TrescaFunctional<dim>::keep_slip(VectorType         &v,
                                    const VectorType   &u,
                                    const ContactState &state) const
   {
-    unsigned int n_changed = 0;
-    if (state.has_friction())
-      for (unsigned int p = 0; p < problem.contact.size(); ++p)
-        if (state.normal_force(p) > 0 && !state.sticks(p))
-          {
-            const ContactNode<dim> &node = problem.contact[p];
-            const auto              a    = slip_components<dim>(node, u);
-            const auto              b    = tangential_components<dim>(node, v);
-            double                  uu = 0, uv = 0;
-            // What is prescribed does not change, but takes part in the slip.
-            double free = 0;
-            for (unsigned int t = 0; t < dim - 1; ++t)
-              {
-                uu += a[t] * a[t];
-                if (t < node.n_free_tangents)
-                  {
-                    uv += a[t] * b[t];
-                    free += a[t] * a[t];
-                  }
-              }
-            if (uu + uv >= 0 || free == 0)
-              continue;
-            ++n_changed;
-            for (unsigned int t = 1; t <= node.n_free_tangents; ++t)
-              for (unsigned int d = 0; d < dim; ++d)
-                v.local_element(dim * node.node + d) -=
-                  (uu + uv) / free * a[t - 1] * node.frame[t][d];
-          }
-    return n_changed;
+    const std::vector<unsigned int> nodes = reversing_nodes(v, u, state);
+    stop(v, u, nodes);
+    return nodes.size();
   }
 
 

@@ -52,11 +52,22 @@ namespace Friction
     project(VectorType &v, const VectorType &u, const double length) const;
 
     /**
-     * Changes @p v such that at each sliding node $(u+v)_T\cdot u_T\ge0$: no
-     * node slips back beyond the line through $u_T=0$ perpendicular to its
-     * slip. Prescribed components stay as they are. Returns the number of this
-     * process' nodes where it had to.
+     * The contact nodes of this process that slide, and which v would have slip
+     * back beyond the line through $u_T=0$ perpendicular to their slip:
+     * $(u+v)_T\cdot u_T<0$.
      */
+    std::vector<unsigned int> reversing_nodes(const VectorType   &v,
+                                              const VectorType   &u,
+                                              const ContactState &state) const;
+
+    /** Changes @p v such that contact nodes, which would reverse their slip,
+     * come to rest on that line. Prescribed components stay as they are. */
+    void stop(VectorType                      &v,
+              const VectorType                &u,
+              const std::vector<unsigned int> &contact_nodes) const;
+
+    /** Does so with all nodes that would, and returns how many of this process
+     * they are. */
     unsigned int keep_slip(VectorType         &v,
                            const VectorType   &u,
                            const ContactState &state) const;

@@ -439,6 +439,102 @@ namespace test_linearization
 
 
 
+  // Before a second correction: the nodes that the first one would have reverse
+  // their slip come to rest, are held there, and what is left of the residual
+  // is that of the linearised problem.
+  template <int dim>
+  void
+  test_second_correction(const RandomProblem<dim> &problem, Random &random)
+  {
+    const auto                 &contact  = problem.contact();
+    const DiscreteProblem<dim>  discrete = problem.friction_problem(friction);
+    const TrescaFunctional<dim> functional(discrete);
+
+    bool         found = true, held = true, elsewhere = true;
+    unsigned int n_reversing = 0, n_others = 0;
+    double       slip_left = 0, defect_error = 0, moved = 0;
+    for (unsigned int sample = 0; sample < 10; ++sample)
+      {
+        Sample             it = make_sample<dim>(problem, random);
+        Linearization<dim> linearization(discrete, TruncationVariant::phases);
+        update(linearization, it.u, it.state);
+        const Truncation<dim> before = linearization.truncation();
+        const VectorType      r =
+          linearized_residual<dim>(problem, linearization, it.u, it.state);
+        VectorType v = problem.leaf_vector();
+        for (auto &value : v)
+          value = random(-.2, .2);
+        before.apply(v.begin());
+
+        const std::vector<unsigned int> reversing =
+          functional.reversing_nodes(v, it.u, it.state);
+        VectorType moved_to(it.u);
+        moved_to += v;
+        const VectorType first = v;
+        functional.stop(v, it.u, reversing);
+        VectorType stopped(it.u);
+        stopped += v;
+        linearization.hold(reversing, Iterate(it.u, it.state));
+        for (unsigned int p = 0; p < contact.size(); ++p)
+          {
+            const auto &node = contact[p];
+            const bool  slides =
+              it.phases[p] == slip || it.phases[p] == open_slip;
+            const auto slip_before = slip_of<dim>(node, it.u);
+            const bool reverses    = slides && node.n_free_tangents > 0 &&
+              slip_of<dim>(node, moved_to) * slip_before < 0;
+            const bool listed =
+              std::find(reversing.begin(), reversing.end(), p) !=
+              reversing.end();
+            found             = found && reverses == listed;
+            const auto &after = linearization.truncation();
+            if (listed)
+              {
+                ++n_reversing;
+                slip_left = std::max(
+                  slip_left,
+                  std::abs(slip_of<dim>(node, stopped) * slip_before) /
+                    (slip_before.norm() *
+                     (slip_of<dim>(node, moved_to) - slip_before).norm()));
+                const auto T = expected_projector<dim>(
+                  node, it.phases[p] == slip ? stick : open_stick);
+                held = held &&
+                  (to_matrix<dim>(after.projector(node.node)) - T)
+                      .cwiseAbs()
+                      .maxCoeff() < 1e-14 &&
+                  after.curvature(node.node) == zero_block<dim>();
+              }
+            else
+              {
+                ++n_others;
+                elsewhere = elsewhere && after.agrees(before, node.node);
+                for (unsigned int d = 0; d < dim; ++d)
+                  moved = std::max(moved,
+                                   std::abs(v(dim * node.node + d) -
+                                            first(dim * node.node + d)));
+              }
+          }
+
+        VectorType defect(r);
+        linearization.linearized_defect(defect, r, v);
+        VectorType expected(r);
+        linearization.truncation().apply(expected.begin());
+        const double size = expected.linfty_norm();
+        expected -=
+          second_derivative<dim>(problem, linearization.truncation(), v);
+        expected -= defect;
+        defect_error = std::max(defect_error, expected.linfty_norm() / size);
+      }
+    check(n_reversing > 10 && n_others > 10, "some nodes reverse their slip");
+    check(found, "they are the ones that are found");
+    check_below(slip_left, 1e-13, "they come to rest");
+    check(held, "and are held there");
+    check(elsewhere && moved == 0, "others are left alone");
+    check_below(defect_error, 1e-13, "the defect of the first correction");
+  }
+
+
+
   template <int dim>
   void
   test_bounds(const RandomProblem<dim> &problem, Random &random)
@@ -675,6 +771,7 @@ namespace test_linearization
               << std::endl;
     test_derivatives<dim>(problem, random);
     test_bounds<dim>(problem, random);
+    test_second_correction<dim>(problem, random);
     test_refresh(problem, random);
   }
 } // namespace test_linearization
