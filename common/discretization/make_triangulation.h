@@ -15,8 +15,8 @@ namespace Friction
    * one at most.
    *
    * Several processes share a parallel::distributed::Triangulation. One process
-   * has a plain one, without p4est, which is refined in the same way and in
-   * less than half of the time.
+   * has a plain one, without p4est, which is refined in the same way and, but
+   * for new vertices on curved surfaces, in less than half of the time.
    *
    * @param for_checkpoints  whether the mesh is to be saved or loaded, which
    *   only p4est can do, for any number of processes.
