@@ -5,6 +5,8 @@
 #include <deal.II/base/point.h>
 #include <deal.II/base/tensor.h>
 
+#include <deal.II/fe/mapping.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -80,6 +82,22 @@ namespace Friction::Multilinear
 
 
 
+  /// The corners of a face of a cell, in the order of deal.II's standard
+  /// orientation.
+  template <int dim>
+  std::array<unsigned int, GeometryInfo<dim>::vertices_per_face>
+  corners_of_face(const unsigned int f)
+  {
+    std::array<unsigned int, GeometryInfo<dim>::vertices_per_face> corners;
+    for (unsigned int v = 0, k = 0; v < GeometryInfo<dim>::vertices_per_cell;
+         ++v)
+      if (side_of_corner(v, f / 2) == f % 2)
+        corners[k++] = v;
+    return corners;
+  }
+
+
+
   /// A cell and the displacement in it.
   template <int dim>
   struct CellValues
@@ -112,6 +130,39 @@ namespace Friction::Multilinear
       for (unsigned int d = 0; d < dim; ++d)
         result[d] = corners[corner][d];
       return result;
+    }
+
+    /// The distance between two corners.
+    double
+    distance(const unsigned int corner, const unsigned int other) const
+    {
+      double square = 0.;
+      for (unsigned int c = 0; c < dim; ++c)
+        square += (corners[corner][c] - corners[other][c]) *
+          (corners[corner][c] - corners[other][c]);
+      return std::sqrt(square);
+    }
+
+    /// The longest line between opposite corners.
+    double
+    diameter() const
+    {
+      double longest = 0.;
+      for (unsigned int v = 0; v < n_corners / 2; ++v)
+        longest = std::max(longest, distance(v, n_corners - 1 - v));
+      return longest;
+    }
+
+    /// The same of a face of the cell.
+    double
+    diameter_of_face(const unsigned int f) const
+    {
+      const auto of_face = corners_of_face<dim>(f);
+      double     longest = 0.;
+      for (unsigned int k = 0; k < of_face.size() / 2; ++k)
+        longest =
+          std::max(longest, distance(of_face[k], *(of_face.rbegin() + k)));
+      return longest;
     }
 
     /// The least height of the parallelogram or parallelepiped that has the
@@ -149,6 +200,28 @@ namespace Friction::Multilinear
     /// of the unit cell; these have the order of the corners they begin in.
     std::array<std::array<Values, n_edges>, dim> edges;
   };
+
+
+
+  /// The values of a cell, with its corners as a mapping has them and a
+  /// displacement that is known at its nodes.
+  template <int dim, typename CellIterator, typename VectorType>
+  CellValues<dim>
+  cell_values(const Mapping<dim> &mapping,
+              const CellIterator &cell,
+              const VectorType   &displacement)
+  {
+    std::array<typename CellValues<dim>::Values, CellValues<dim>::n_corners>
+               corners;
+    const auto vertices = mapping.get_vertices(cell);
+    for (unsigned int v = 0; v < CellValues<dim>::n_corners; ++v)
+      for (unsigned int c = 0; c < dim; ++c)
+        {
+          corners[v][c]       = vertices[v][c];
+          corners[v][dim + c] = displacement(cell->vertex_dof_index(v, c));
+        }
+    return CellValues<dim>(corners);
+  }
 
 
 
@@ -210,18 +283,15 @@ namespace Friction::Multilinear
 
 
 
-  /// The corners of a face of a cell, in the order of deal.II's standard
-  /// orientation.
+  /// The middle of the unit cell.
   template <int dim>
-  std::array<unsigned int, GeometryInfo<dim>::vertices_per_face>
-  corners_of_face(const unsigned int f)
+  Point<dim>
+  middle_of_cell()
   {
-    std::array<unsigned int, GeometryInfo<dim>::vertices_per_face> corners;
-    for (unsigned int v = 0, k = 0; v < GeometryInfo<dim>::vertices_per_cell;
-         ++v)
-      if (side_of_corner(v, f / 2) == f % 2)
-        corners[k++] = v;
-    return corners;
+    Point<dim> middle;
+    for (unsigned int d = 0; d < dim; ++d)
+      middle[d] = 0.5;
+    return middle;
   }
 
 

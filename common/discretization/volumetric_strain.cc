@@ -45,25 +45,16 @@ namespace Friction
     // Both body and displacement are linear in each coordinate of the unit
     // cell, so that two points per direction, all of the same weight, integrate
     // Jacobian and divergence exactly.
-    using CellValues = Multilinear::CellValues<dim>;
     const QGauss<dim> quadrature(2);
     Assert(dof_handler.get_fe().degree == 1, ExcNotImplemented());
     means.resize(dof_handler.get_triangulation().n_active_cells());
-    std::array<typename CellValues::Values, CellValues::n_corners> corners;
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (!cell->is_artificial() &&
           materials.of(cell).volumetric_strain() == VolumetricStrain::mean)
         {
-          const auto vertices = mapping.get_vertices(cell);
-          for (unsigned int v = 0; v < CellValues::n_corners; ++v)
-            for (unsigned int c = 0; c < dim; ++c)
-              {
-                corners[v][c] = vertices[v][c];
-                corners[v][dim + c] =
-                  displacement(cell->vertex_dof_index(v, c));
-              }
-          const CellValues values(corners);
-          double           volume = 0., integral = 0.;
+          const Multilinear::CellValues<dim> values =
+            Multilinear::cell_values(mapping, cell, displacement);
+          double volume = 0., integral = 0.;
           for (const Point<dim> &p : quadrature.get_points())
             {
               const Multilinear::PointOfCell<dim> here(values, p);

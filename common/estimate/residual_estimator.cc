@@ -283,7 +283,7 @@ namespace Friction
         for (unsigned int c = 0; c < dim; ++c)
           u = std::max(u, std::abs(displacements[cell->vertex_index(v)][c]));
       return 1e-18 * 2. * problem.materials.of(cell).mu() * u * u *
-        std::pow(cell->diameter(), dim - 2);
+        (dim == 2 ? 1. : cell->diameter());
     }
 
 
@@ -396,10 +396,11 @@ namespace Friction
         }
 
       const double of_material = certain_part_of_material(material);
+      const double diameter    = values.diameter();
       const double of_shape =
-        certain_part_of_side(values.width(), cell->diameter(), dim);
+        certain_part_of_side(values.width(), diameter, dim);
       add(cell,
-          cell->diameter() * cell->diameter() * squared_residual / (2. * mu),
+          diameter * diameter * squared_residual / (2. * mu),
           of_material * of_shape * of_shape,
           estimate.interior);
       if (!is_pointwise)
@@ -527,7 +528,7 @@ namespace Friction
         }
 
       const double mu       = std::max(material.mu(), other_material.mu());
-      const double diameter = cell->face(f)->diameter();
+      const double diameter = values.diameter_of_face(f);
       const double share    = 0.5 * diameter * squared_jump / (2. * mu);
       const double certain_part =
         std::min(certain_part_of_material(material),
@@ -606,7 +607,7 @@ namespace Friction
               residual[c] = 0.;
           squared_residual += residual.norm_square() * JxW[q];
         }
-      const double diameter = cell->face(f)->diameter();
+      const double diameter = values.diameter_of_face(f);
       add(cell,
           diameter * squared_residual / (2. * material.mu()),
           certain_part_of_material(material) *

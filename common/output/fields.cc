@@ -218,9 +218,7 @@ namespace Friction
       PointNumbers<dim> points(dof_handler.get_triangulation(), piece);
       using CellValues = Multilinear::CellValues<dim>;
       std::array<typename CellValues::Values, CellValues::n_corners> corners;
-      Point<dim>                                                     middle;
-      for (unsigned int d = 0; d < dim; ++d)
-        middle[d] = 0.5;
+      const Point<dim> middle = Multilinear::middle_of_cell<dim>();
       for (const auto &cell : dof_handler.active_cell_iterators())
         if (cell->is_locally_owned())
           {

@@ -1,3 +1,4 @@
+#include <common/discretization/multilinear_cell.h>
 #include <common/output/mesh_warnings.h>
 #include <common/output/penetration.h>
 #include <common/output/warnings.h>
@@ -6,7 +7,6 @@
 #include <common/printable.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/symmetric_tensor.h>
 
 #include <deal.II/fe/fe_q.h>
@@ -276,21 +276,17 @@ namespace Friction
       VectorType u = discretization.vector();
       u.copy_locally_owned_data_from(displacement);
       discretization.interpolate_hanging_nodes(u);
-      FEValues<dim>                        values(discretization.mapping(),
-                           discretization.dof_handler().get_fe(),
-                           QMidpoint<dim>(),
-                           update_gradients | update_JxW_values);
-      const FEValuesExtractors::Vector     vector(0);
-      std::vector<SymmetricTensor<2, dim>> strain(1);
-      std::array<double, 2>                sums{};
+      std::array<double, 2> sums{};
       for (const auto &cell :
            discretization.dof_handler().active_cell_iterators())
         if (cell->is_locally_owned())
           {
-            values.reinit(cell);
-            values[vector].get_function_symmetric_gradients(u, strain);
-            sums[0] += strain[0] * strain[0] * values.JxW(0);
-            sums[1] += values.JxW(0);
+            const Multilinear::PointOfCell<dim> middle(
+              Multilinear::cell_values(discretization.mapping(), cell, u),
+              Multilinear::middle_of_cell<dim>());
+            const SymmetricTensor<2, dim> strain = symmetrize(middle.gradient);
+            sums[0] += strain * strain * middle.determinant;
+            sums[1] += middle.determinant;
           }
       sums =
         sum_over_processes(sums, discretization.constraints().communicator());
