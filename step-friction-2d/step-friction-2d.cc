@@ -135,8 +135,9 @@ namespace StepFriction2d
   // that share but a vertex within one level of each other. Otherwise a cell of
   // level 2 could meet one of level 4 there, and no level would have both nodes
   // of a block of the matrix. A run of one process that neither reads nor
-  // writes checkpoints gets a plain <code>Triangulation</code>, which is
-  // refined in the same way, and in less than half of the time.
+  // writes checkpoints gets a plain <code>Triangulation</code>. It is refined
+  // in the same way; in less than half of the time, unless new vertices on
+  // curved surfaces take most of it.
   template <int dim>
   ContactProblem<dim>::ContactProblem(const Parameters &parameters,
                                       const Start       start)

@@ -33,82 +33,85 @@ namespace Friction
 
 
 
-    // Refines a mesh of several processes, which get other cells then.
+    // Takes vectors to the next mesh of several processes, which get other
+    // cells then.
     template <int dim>
-    void
-    refine_distributed(Triangulation<dim>              &mesh,
-                       Discretization<dim>             &discretization,
-                       const std::vector<VectorType *> &vectors)
+    class DistributedTransfer
     {
-      Compatibility::SolutionTransfer<dim, VectorType> transfer(
-        discretization.dof_handler());
-      std::vector<double> lifts;
-      for (VectorType *v : vectors)
-        lifts.push_back(lift_above_rounding(*v));
-      transfer.prepare_for_coarsening_and_refinement(
-        std::vector<const VectorType *>(vectors.begin(), vectors.end()));
+    public:
+      DistributedTransfer(const DoFHandler<dim>           &dofs,
+                          const std::vector<VectorType *> &vectors)
+        : transfer(dofs)
       {
-        const RunScope part(Compatibility::mpi_communicator(mesh),
-                            RunPart::mesh);
-        mesh.execute_coarsening_and_refinement();
+        for (VectorType *v : vectors)
+          lifts.push_back(lift_above_rounding(*v));
+        transfer.prepare_for_coarsening_and_refinement(
+          std::vector<const VectorType *>(vectors.begin(), vectors.end()));
       }
-      discretization.set_up();
-      for (VectorType *v : vectors)
-        *v = discretization.vector();
-      std::vector<VectorType *> interpolated = vectors;
-      transfer.interpolate(interpolated);
-      for (unsigned int i = 0; i < vectors.size(); ++i)
-        vectors[i]->add(-lifts[i]);
-    }
+
+      void
+      interpolate(const std::vector<VectorType *> &vectors)
+      {
+        std::vector<VectorType *> interpolated = vectors;
+        transfer.interpolate(interpolated);
+        for (unsigned int i = 0; i < vectors.size(); ++i)
+          vectors[i]->add(-lifts[i]);
+      }
+
+    private:
+      Compatibility::SolutionTransfer<dim, VectorType> transfer;
+      std::vector<double>                              lifts;
+    };
 
 
 
-    // Refines a mesh of one process. Each cell of the old mesh is still there,
-    // refined or not, and is given the values that it had.
+    // Takes vectors to the next mesh of one process. Each cell of the old mesh
+    // is still there, refined or not, and is given the values that it had.
     template <int dim>
-    void
-    refine_undivided(Triangulation<dim>              &mesh,
-                     Discretization<dim>             &discretization,
-                     const std::vector<VectorType *> &vectors)
+    class UndividedTransfer
     {
-      AssertDimension(
-        Utilities::MPI::n_mpi_processes(Compatibility::mpi_communicator(mesh)),
-        1);
-      const DoFHandler<dim> &dofs   = discretization.dof_handler();
-      const unsigned int     n_dofs = dofs.get_fe().n_dofs_per_cell();
+    public:
+      UndividedTransfer(const DoFHandler<dim>           &dofs,
+                        const std::vector<VectorType *> &vectors)
+        : on_cell(dofs.get_fe().n_dofs_per_cell())
+      {
+        const Triangulation<dim> &mesh = dofs.get_triangulation();
+        AssertDimension(Utilities::MPI::n_mpi_processes(
+                          Compatibility::mpi_communicator(mesh)),
+                        1);
+        cells.reserve(mesh.n_active_cells());
+        values.reserve(std::size_t(mesh.n_active_cells()) * vectors.size() *
+                       on_cell.size());
+        for (const auto &cell : dofs.active_cell_iterators())
+          {
+            Assert(!cell->coarsen_flag_set(), ExcNotImplemented());
+            cells.push_back(cell);
+            for (const VectorType *v : vectors)
+              {
+                cell->get_dof_values(*v, on_cell);
+                values.insert(values.end(), on_cell.begin(), on_cell.end());
+              }
+          }
+      }
+
+      void
+      interpolate(const std::vector<VectorType *> &vectors)
+      {
+        auto value = values.begin();
+        for (const auto &cell : cells)
+          for (VectorType *v : vectors)
+            {
+              std::copy_n(value, on_cell.size(), on_cell.begin());
+              value += on_cell.size();
+              cell->set_dof_values_by_interpolation(on_cell, *v);
+            }
+      }
+
+    private:
       std::vector<typename DoFHandler<dim>::cell_iterator> cells;
       std::vector<double>                                  values;
-      cells.reserve(mesh.n_active_cells());
-      values.reserve(std::size_t(mesh.n_active_cells()) * vectors.size() *
-                     n_dofs);
-      Vector<double> on_cell(n_dofs);
-      for (const auto &cell : dofs.active_cell_iterators())
-        {
-          Assert(!cell->coarsen_flag_set(), ExcNotImplemented());
-          cells.push_back(cell);
-          for (const VectorType *v : vectors)
-            {
-              cell->get_dof_values(*v, on_cell);
-              values.insert(values.end(), on_cell.begin(), on_cell.end());
-            }
-        }
-      {
-        const RunScope part(Compatibility::mpi_communicator(mesh),
-                            RunPart::mesh);
-        mesh.execute_coarsening_and_refinement();
-      }
-      discretization.set_up();
-      for (VectorType *v : vectors)
-        *v = discretization.vector();
-      auto value = values.begin();
-      for (const auto &cell : cells)
-        for (VectorType *v : vectors)
-          {
-            std::copy_n(value, n_dofs, on_cell.begin());
-            value += n_dofs;
-            cell->set_dof_values_by_interpolation(on_cell, *v);
-          }
-    }
+      Vector<double>                                       on_cell;
+    };
   } // namespace
 
 
@@ -156,11 +159,22 @@ namespace Friction
       Utilities::MPI::max(deepest, communicator),
       communicator);
 
+    const auto refine = [&](auto transfer) {
+      {
+        const RunScope part_of_mesh(communicator, RunPart::mesh);
+        mesh.execute_coarsening_and_refinement();
+      }
+      discretization.set_up();
+      for (VectorType *v : vectors)
+        *v = discretization.vector();
+      transfer.interpolate(vectors);
+    };
+    const DoFHandler<dim> &dofs = discretization.dof_handler();
     if (dynamic_cast<parallel::distributed::Triangulation<dim> *>(&mesh) !=
         nullptr)
-      refine_distributed(mesh, discretization, vectors);
+      refine(DistributedTransfer<dim>(dofs, vectors));
     else
-      refine_undivided(mesh, discretization, vectors);
+      refine(UndividedTransfer<dim>(dofs, vectors));
   }
 
 
