@@ -33,7 +33,7 @@ namespace Friction
 
 
 
-    // Takes vectors to the next mesh of several processes, which get other
+    // Takes vectors to the next mesh where p4est makes it: processes get other
     // cells then.
     template <int dim>
     class DistributedTransfer
@@ -65,7 +65,7 @@ namespace Friction
 
 
 
-    // Takes vectors to the next mesh of one process. Each cell of the old mesh
+    // Takes vectors to the next mesh without p4est. Each cell of the old mesh
     // is still there, refined or not, and is given the values that it had.
     template <int dim>
     class UndividedTransfer

@@ -7,6 +7,7 @@
 #include <common/printable.h>
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/symmetric_tensor.h>
 
 #include <deal.II/fe/fe_q.h>
