@@ -13,15 +13,13 @@ namespace Friction
 {
   namespace
   {
-    // Multiplications per unknown with which factorising takes about as long as
-    // two dozen multigrid cycles, of a body with such a material, and with
-    // which it takes as long as some hundreds; and unknowns up to which it is
-    // worth while to count them.
+    // Multiplications per unknown that take about as long as a multigrid cycle
+    // of an easy material; cycles up to which anything is worth while; and
+    // unknowns up to which it is worth while to count them.
     template <int dim>
-    constexpr double cheap = (dim == 2 ? 6000. : 60000.);
+    constexpr double per_cycle = (dim == 2 ? 250. : 2500.);
 
-    template <int dim>
-    constexpr double affordable = 10 * cheap<dim>;
+    constexpr double most_cycles = 240.;
 
     template <int dim>
     constexpr types::global_dof_index largest = (dim == 2 ? 60000 : 20000);
@@ -100,7 +98,7 @@ namespace Friction
                                   [](const char held) { return held; }));
     tree = std::make_unique<EliminationTree>(
       matrix->sparsity(), positions, is_contact, is_absent);
-    if (!is_worthwhile(true))
+    if (!is_worthwhile(most_cycles))
       {
         tree.reset();
         gathered = NodeBlockMatrix<dim>();
@@ -191,17 +189,17 @@ namespace Friction
 
   template <int dim>
   bool
-  CondensedSolver<dim>::is_worthwhile(const bool others_have_failed) const
+  CondensedSolver<dim>::is_worthwhile(const double n_cycles) const
   {
     if (!tree || has_failed)
       return false;
     const double n = dim * tree->fronts().back().nodes.size();
-    // A dozen of cycles of the condensed problem: sweeps, and factors.
-    const double cycles = 12 * n * n * (10 + n / 6);
+    // Some cycles of the condensed problem, sweeps and factors: these are
+    // dense, and take a quarter of the time per multiplication.
+    const double cycles = 3 * n * n * (10 + n / 6);
     return n > 0 &&
       tree->cost(dim) + cycles <=
-      (others_have_failed ? affordable<dim> : cheap<dim>)*dim *
-        matrix->n_rows();
+      n_cycles * per_cycle<dim> * dim * matrix->n_rows();
   }
 
 
@@ -272,7 +270,8 @@ namespace Friction
                               const CoulombSettings       &limits,
                               const Progress              &progress)
   {
-    Assert(is_worthwhile(true), ExcMessage("Ask is_worthwhile() first."));
+    Assert(is_worthwhile(most_cycles),
+           ExcMessage("Ask is_worthwhile() first."));
     const MPI_Comm   comm   = problem.communicator();
     const PhaseCosts before = phase_costs(comm);
     SolverReport     report;

@@ -43,9 +43,10 @@ namespace Friction
 
     ~CondensedSolver();
 
-    /** Whether it takes no longer than a few dozen multigrid cycles, or, if
-     * others have failed, a few hundreds. The same on all processes. */
-    bool is_worthwhile(const bool others_have_failed = false) const;
+    /** Whether it takes no longer than so many multigrid cycles, of a material
+     * that is neither stiff in parts nor nearly incompressible; never if it
+     * takes more than 240. The same on all processes. */
+    bool is_worthwhile(const double n_cycles) const;
 
     /**
      * As CoulombSolver::solve(); collective. The cycles that are reported are

@@ -30,6 +30,15 @@ namespace Friction
 
 
 
+    // How many cycles contact nodes alone may take the time of: where others
+    // have failed; where a material is nearly incompressible, which makes
+    // cycles several times as dear, and is solved to a given tolerance; and
+    // where fewer will do, or are cheaper.
+    constexpr double cycles_of_failures = 240, cycles_to_the_end = 72,
+                     cycles_to_expect = 24;
+
+
+
     // A user who chooses other parts wants to see them work.
     bool
     has_defaults(const SolverSettings &settings)
@@ -190,14 +199,19 @@ namespace Friction
   SafeguardedSolver<dim>::contact_nodes_alone_are_better(
     const bool others_have_failed)
   {
-    if (!settings.condensation || !has_defaults(settings) || much_friction() ||
-        !(others_have_failed || settings.nearly_incompressible ||
-          mostly_lines_in_space() || materials_do_jump()))
+    if (!settings.condensation || !has_defaults(settings))
+      return false;
+    if (!(settings.nearly_incompressible || mostly_lines_in_space() ||
+          materials_do_jump() || (others_have_failed && !much_friction())))
       return false;
     if (!condensed)
       condensed = std::make_unique<CondensedSolver<dim>>(
         problem, node_positions(levels.dof_handler(), problem.constraints));
-    return condensed->is_worthwhile(others_have_failed);
+    const bool are_dearer =
+      settings.nearly_incompressible && settings.energy_tolerance == 0.;
+    return condensed->is_worthwhile(others_have_failed ? cycles_of_failures
+                                      : are_dearer     ? cycles_to_the_end
+                                                       : cycles_to_expect);
   }
 
 
@@ -206,11 +220,14 @@ namespace Friction
   SolverReport
   SafeguardedSolver<dim>::contact_nodes_alone(const Search &search)
   {
+    CoulombSettings its_settings = later_settings(search.accuracy);
+    if (much_friction())
+      its_settings.limits.patience = short_patience;
     return condensed->solve(
       iteration.functional(),
       Iterate(search.u, search.state, problem.has_coulomb_friction()),
       settings,
-      later_settings(search.accuracy),
+      its_settings,
       search.progress);
   }
 

@@ -21,8 +21,9 @@ namespace Friction
    * 1. the algorithm of the settings on contact nodes alone, see
    *    CondensedSolver, where coarse functions are known to be of little help:
    *    materials jump, or are nearly incompressible, or most nodes of a body in
-   *    three dimensions are in lines. There has to be not much friction, and so
-   *    few unknowns that this takes no longer than cycles;
+   *    three dimensions are in lines. There have to be so few unknowns that
+   *    this takes no longer than cycles, and with much friction it has to show
+   *    soon that it gets somewhere;
    * 2. the algorithm of the settings, by default Algorithm 3. With much
    *    friction, or where materials jump, it has to show soon that it gets
    *    somewhere;

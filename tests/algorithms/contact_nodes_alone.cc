@@ -56,7 +56,7 @@ namespace test_contact_nodes_alone
     CondensedSolver<dim> condensed(
       problem,
       node_positions(whole.discretization.dof_handler(), problem.constraints));
-    check_everywhere(condensed.is_worthwhile(), "  the body is small");
+    check_everywhere(condensed.is_worthwhile(24.), "  the body is small");
     const auto solve = [&]() {
       return condensed.solve(functional,
                              Iterate(v, other, problem.has_coulomb_friction()),

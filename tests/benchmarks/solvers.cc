@@ -310,6 +310,50 @@ namespace Benchmark
           }
         else
           solve_level(nest, options.limit);
+        const auto compete = [&](const bool last) {
+          Contest<dim> contest(
+            nest, n_coarser, options.seconds, options.limit, first);
+          if (last && !options.history.empty())
+            {
+              std::cerr << "reference solution" << std::endl;
+              contest.keep_history(history);
+            }
+          for (const std::string &name : options.solvers)
+            {
+              std::cerr << name << std::endl;
+              const Result r = run_solver(
+                contest, name, options.history.empty() ? options.repeat : 0.);
+              table << parameters.name << ','
+                    << parameters.contact.friction_coefficient << ','
+                    << parameters.material.poisson_ratio() << ','
+                    << nest.level() << ','
+                    << nest.discretization().dof_handler().n_dofs() << ','
+                    << r.n_contact << ',' << r.n_sticking << ',' << name << ','
+                    << r.converged << ',' << r.iterations << ','
+                    << r.inner_iterations << ',' << r.setup_seconds << ','
+                    << r.solve_seconds << ',' << r.memory << ','
+                    << r.certificate << ',' << r.energy << ',' << r.n_attempts
+                    << ",\"" << r.attempt << "\"," << in_quotes(r.failure)
+                    << std::endl;
+              std::printf("%-22s %5u %8u %8u %8u  %-4s %5u %6u %9.3f %9.3f "
+                          "%8.1f %9.1e %16.9e\n",
+                          name.c_str(),
+                          nest.level(),
+                          static_cast<unsigned int>(
+                            nest.discretization().dof_handler().n_dofs()),
+                          r.n_contact,
+                          r.n_sticking,
+                          r.converged ? "yes" : "no",
+                          r.iterations,
+                          r.inner_iterations,
+                          r.setup_seconds,
+                          r.solve_seconds,
+                          1e-6 * r.memory,
+                          r.certificate,
+                          r.energy);
+              std::fflush(stdout);
+            }
+        };
         const bool last   = given || nest.is_last();
         const bool wanted = options.levels.empty()
           ? last || options.every_level
@@ -317,52 +361,13 @@ namespace Benchmark
                       options.levels.end(),
                       nest.level()) != options.levels.end();
         if (wanted)
-          {
-            Contest<dim> contest(
-              nest, n_coarser, options.seconds, options.limit, first);
-            if (last && !options.history.empty())
-              {
-                std::cerr << "reference solution" << std::endl;
-                contest.keep_history(history);
-              }
-            for (const std::string &name : options.solvers)
-              {
-                std::cerr << name << std::endl;
-                const Result r = run_solver(
-                  contest, name, options.history.empty() ? options.repeat : 0.);
-                table << parameters.name << ','
-                      << parameters.contact.friction_coefficient << ','
-                      << parameters.material.poisson_ratio() << ','
-                      << nest.level() << ','
-                      << nest.discretization().dof_handler().n_dofs() << ','
-                      << r.n_contact << ',' << r.n_sticking << ',' << name
-                      << ',' << r.converged << ',' << r.iterations << ','
-                      << r.inner_iterations << ',' << r.setup_seconds << ','
-                      << r.solve_seconds << ',' << r.memory << ','
-                      << r.certificate << ',' << r.energy << ',' << r.n_attempts
-                      << ",\"" << r.attempt << "\"," << in_quotes(r.failure)
-                      << std::endl;
-                std::printf("%-22s %5u %8u %8u %8u  %-4s %5u %6u %9.3f %9.3f "
-                            "%8.1f %9.1e %16.9e\n",
-                            name.c_str(),
-                            nest.level(),
-                            static_cast<unsigned int>(
-                              nest.discretization().dof_handler().n_dofs()),
-                            r.n_contact,
-                            r.n_sticking,
-                            r.converged ? "yes" : "no",
-                            r.iterations,
-                            r.inner_iterations,
-                            r.setup_seconds,
-                            r.solve_seconds,
-                            1e-6 * r.memory,
-                            r.certificate,
-                            r.energy);
-                std::fflush(stdout);
-              }
-          }
-        n_coarser = nest.discretization().dof_handler().n_dofs();
-        more      = !given && nest.advance();
+          compete(last);
+        const double n_dofs = nest.discretization().dof_handler().n_dofs();
+        more                = !given && nest.advance();
+        // Where the error is nowhere, no mesh follows.
+        if (!more && !last && !wanted && options.levels.empty())
+          compete(true);
+        n_coarser = n_dofs;
       }
   }
 } // namespace Benchmark
