@@ -195,6 +195,31 @@ namespace test_safeguards
 
 
 
+  // Much friction, and a material that hardly changes its volume: levels are of
+  // little use to any method, and contact nodes alone come first.
+  void
+  test_much_friction_and_little_volume()
+  {
+    std::cout << "Much friction, nearly incompressible" << std::endl;
+    Parameters         p = read_parameters(SCENES_DIR "/hertz.prm",
+                                   {"Contact/Friction coefficient=1.7",
+                                            "Material/Poisson ratio=0.4985",
+                                            "Material/Volumetric strain=mean",
+                                            "Refinement/Initial refinements=4"});
+    VectorType         u, v;
+    ContactState       state(0, false), other(0, false);
+    const SolverReport report = solve<2>(p, u, state);
+    check(report.converged && report.attempts.size() == 1,
+          "it is solved at the first attempt");
+    if (!report.attempts.empty())
+      std::cout << report.attempts[0].name << std::endl;
+    p.solver.condensation = false;
+    check(solve<2>(p, v, other).converged, "and by others");
+    check_below(distance(u, v), 1e-6, "displacements agree");
+  }
+
+
+
   // No solution satisfies the laws to the last digit. If that is what is asked
   // for, everything is tried, and what is said in the end is that it was not
   // enough.
@@ -226,5 +251,6 @@ TEST(safeguards)
   test_long_cells(FrictionLaw::coulomb);
   test_long_cells(FrictionLaw::none);
   test_much_friction();
+  test_much_friction_and_little_volume();
   test_failure();
 }
