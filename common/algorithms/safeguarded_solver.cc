@@ -34,8 +34,10 @@ namespace Friction
     // have failed; where a material is nearly incompressible, which makes
     // cycles several times as dear, and is solved to a given tolerance; and
     // where fewer will do, or are cheaper.
-    constexpr double cycles_of_failures = 240, cycles_to_the_end = 72,
-                     cycles_to_expect = 24;
+    constexpr double cycles_of_failures = 240, cycles_to_expect = 24;
+
+    template <int dim>
+    constexpr double cycles_to_the_end = (dim == 2 ? 72 : 36);
 
 
 
@@ -210,7 +212,7 @@ namespace Friction
     const bool are_dearer =
       settings.nearly_incompressible && settings.energy_tolerance == 0.;
     return condensed->is_worthwhile(others_have_failed ? cycles_of_failures
-                                      : are_dearer     ? cycles_to_the_end
+                                      : are_dearer     ? cycles_to_the_end<dim>
                                                        : cycles_to_expect);
   }
 
