@@ -95,7 +95,7 @@ def main():
     parser.add_argument("--table", type=Path, required=True)
     parser.add_argument("--seeds2d", type=seeds_of, default=seeds_of("1-500"))
     parser.add_argument("--seeds3d", type=seeds_of, default=seeds_of("1-200"))
-    parser.add_argument("--limit", type=float, default=10.)
+    parser.add_argument("--limit", type=float, default=30.)
     parser.add_argument("--all", action="store_true")
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
