@@ -31,10 +31,10 @@ namespace Friction
    *    not much friction and materials jump, or most nodes of a body in three
    *    dimensions are in lines of strong couplings: coarse functions do not
    *    follow borders of materials within coarse cells;
-   * 4. where there is not much friction, contact nodes alone, if that takes no
-   *    longer than some hundreds of cycles, whatever the material; and then,
-   *    if 2. was given up early because there was 3. to try, 2. once more, with
-   *    all its time;
+   * 4. contact nodes alone, if that takes no longer than some hundreds of
+   *    cycles, whatever the material where there is not much friction; and
+   *    then, if 2. was given up early because there was 3. to try, 2. once
+   *    more, with all its time;
    * 5. the algorithm of the settings with AlgebraicCorrection, where there is
    *    not much friction: then coarse levels are the trouble, for example
    *    because cells are short in two of three directions;
