@@ -21,17 +21,20 @@ STYLES = {"default": BLACK, **SOLVERS}
 
 
 def read(path):
-    """Seconds by dimension, problem and solver; infinite if it failed."""
+    """Seconds by dimension, problem and solver, infinite if it failed; unknowns by
+    dimension and problem, none if no solver was tried."""
     with open(path, newline="") as file:
         rows = list(csv.DictReader(file))
-    seconds = defaultdict(lambda: defaultdict(dict))
+    seconds, dofs = defaultdict(lambda: defaultdict(dict)), defaultdict(int)
     for row in rows:
+        dim, seed = int(row["dim"]), int(row["seed"])
         solved = row["converged"] == "1"
-        seconds[int(row["dim"])][int(row["seed"])][row["solver"]] = (
+        seconds[dim][seed][row["solver"]] = (
             float(row["seconds"]) if solved else np.inf)
+        dofs[dim, seed] = max(dofs[dim, seed], int(row["dofs"] or 0))
     if not seconds:
         raise DataError(f"{path}: there are no data.")
-    return seconds
+    return seconds, dofs
 
 
 def profile(problems, solver):
@@ -63,20 +66,13 @@ def message(seconds):
     return "The default solves " + "; ".join(parts)
 
 
-def sizes(path):
-    """Unknowns by dimension and problem."""
-    with open(path, newline="") as file:
-        return {(int(row["dim"]), int(row["seed"])): int(row["dofs"])
-                for row in csv.DictReader(file) if row["dofs"]}
-
-
 def print_by_size(seconds, dofs):
     """Small problems take a millisecond or two, whatever the solver."""
     print("dim  unknowns      problems  solved  sooner than Newton's method")
     for dim, problems in sorted(seconds.items()):
         for low, high in ((0, 1000), (1000, 3000), (3000, None)):
             those = [of for seed, of in problems.items()
-                     if low <= dofs.get((dim, seed), 0) < (high or np.inf)]
+                     if low <= dofs[dim, seed] < (high or np.inf)]
             solved = sum(np.isfinite(of["default"]) for of in those)
             first = sum(is_first(of) for of in those)
             print(f"{dim:3}  {low:5} to {high or '':5} {len(those):8} {solved:7} "
@@ -84,8 +80,8 @@ def print_by_size(seconds, dofs):
 
 
 def draw(table, output):
-    seconds = read(table)
-    print_by_size(seconds, sizes(table))
+    seconds, dofs = read(table)
+    print_by_size(seconds, dofs)
     figure, axes = plt.subplots(1, len(seconds), figsize=(7, 3.4), sharey=True,
                                 squeeze=False)
     figure.subplots_adjust(left=0.075, right=0.985, bottom=0.28, wspace=0.06)

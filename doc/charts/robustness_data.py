@@ -18,14 +18,11 @@ import sys
 import time
 from pathlib import Path
 
+import runs
 from random_problems import Problem
 
 SOLVERS = ("default", "algorithm 3", "algorithm 2", "newton direct",
            "newton gmres")
-
-# A solution that takes less than so many seconds is repeated, and the shortest time
-# counts: the first solver would pay for what the program has not used before.
-REPEAT = 0.05
 
 COLUMNS = ("dim", "seed", "solver", "dofs", "contact", "sticking", "converged",
            "iterations", "seconds", "certificate", "attempts", "attempt",
@@ -43,7 +40,7 @@ def solve(program, work, problem, limit):
     scene.write_text(problem.scene())
     table.unlink(missing_ok=True)
     command = [program, problem.dim, scene, f"--table={table}",
-               f"--limit={limit}", f"--repeat={REPEAT}",
+               f"--limit={limit}", f"--repeat={runs.REPEAT}",
                f"--solvers={','.join(SOLVERS)}",
                *options_of(problem)]
     with open(work / f"{name}.log", "w") as log:
