@@ -14,12 +14,10 @@ namespace Friction
   namespace
   {
     // Multiplications per unknown that take about as long as a multigrid cycle
-    // of an easy material; cycles up to which anything is worth while; and
-    // unknowns up to which it is worth while to count them.
+    // of an easy material; and unknowns up to which it is worth while to count
+    // them.
     template <int dim>
     constexpr double per_cycle = (dim == 2 ? 250. : 2500.);
-
-    constexpr double most_cycles = 240.;
 
     template <int dim>
     constexpr types::global_dof_index largest = (dim == 2 ? 60000 : 20000);

@@ -33,6 +33,9 @@ namespace Friction
   class CondensedSolver
   {
   public:
+    /// Cycles beyond which it is never worth while.
+    static constexpr double most_cycles = 240.;
+
     /**
      * Collective.
      * @param problem    kept by reference.
@@ -45,7 +48,7 @@ namespace Friction
 
     /** Whether it takes no longer than so many multigrid cycles, of a material
      * that is neither stiff in parts nor nearly incompressible; never if it
-     * takes more than 240. The same on all processes. */
+     * takes more than most_cycles. The same on all processes. */
     bool is_worthwhile(const double n_cycles) const;
 
     /**

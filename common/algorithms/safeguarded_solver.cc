@@ -30,11 +30,11 @@ namespace Friction
 
 
 
-    // How many cycles contact nodes alone may take the time of: where others
-    // have failed; where a material is nearly incompressible, which makes
-    // cycles several times as dear, and is solved to a given tolerance; and
-    // where fewer will do, or are cheaper.
-    constexpr double cycles_of_failures = 240, cycles_to_expect = 24;
+    // How many cycles contact nodes alone may take the time of: where a
+    // material is nearly incompressible, which makes cycles several times as
+    // dear, and is solved to a given tolerance; and where fewer will do, or are
+    // cheaper. Where others have failed, as many as are ever worth while.
+    constexpr double cycles_to_expect = 24;
 
     template <int dim>
     constexpr double cycles_to_the_end = (dim == 2 ? 72 : 36);
@@ -211,9 +211,10 @@ namespace Friction
         problem, node_positions(levels.dof_handler(), problem.constraints));
     const bool are_dearer =
       settings.nearly_incompressible && settings.energy_tolerance == 0.;
-    return condensed->is_worthwhile(others_have_failed ? cycles_of_failures
-                                      : are_dearer     ? cycles_to_the_end<dim>
-                                                       : cycles_to_expect);
+    return condensed->is_worthwhile(others_have_failed
+                                      ? CondensedSolver<dim>::most_cycles
+                                      : are_dearer ? cycles_to_the_end<dim>
+                                                   : cycles_to_expect);
   }
 
 
