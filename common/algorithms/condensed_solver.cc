@@ -1,5 +1,7 @@
 #include <common/algorithms/condensed_solver.h>
+#include <common/algorithms/newton_solver.h>
 #include <common/iteration/dense_correction.h>
+#include <common/iteration/dense_newton_step.h>
 #include <common/parallel/reductions.h>
 #include <common/parallel/run_clock.h>
 
@@ -75,11 +77,64 @@ namespace Friction
 
 
 
+  // What solves it, by either method.
+  template <int dim>
+  struct CondensedSolver<dim>::SmallSolver
+  {
+    const TrescaFunctional<dim> energy;
+    const MonotoneSmoother<dim> smoother;
+    Linearization<dim>          linearization;
+    DenseCorrection<dim>        correction;
+    LineSearch<dim>             line_search;
+    MonotoneMultigrid<dim>      iteration;
+    DenseNewtonStep<dim>        newton_step;
+    NewtonSolver<dim>           newton;
+
+    SmallSolver(const DiscreteProblem<dim> &problem,
+                const SolverSettings       &settings)
+      : energy(problem)
+      , smoother(problem, settings.local_solver)
+      , linearization(problem, settings.truncation)
+      , correction(problem)
+      , line_search(energy, 1., 0)
+      , iteration(energy,
+                  smoother,
+                  linearization,
+                  correction,
+                  line_search,
+                  settings.smoothing_steps)
+      , newton(energy, newton_step)
+    {}
+
+    SolverReport
+    solve(const By               method,
+          VectorType            &u,
+          ContactState          &state,
+          const CoulombSettings &limits,
+          const Progress        &progress)
+    {
+      return method == By::newton_solver
+        ? solve_by_newton(newton, u, state, limits, progress)
+        : CoulombSolver<dim>(iteration, limits).solve(u, state, progress);
+    }
+
+    std::size_t
+    memory_consumption() const
+    {
+      return smoother.memory_consumption() + correction.memory_consumption() +
+        newton.memory_consumption();
+    }
+  };
+
+
+
   template <int dim>
   CondensedSolver<dim>::CondensedSolver(
     const DiscreteProblem<dim>    &problem,
-    const std::vector<Point<dim>> &own_positions)
+    const std::vector<Point<dim>> &own_positions,
+    const SolverSettings          &settings)
     : problem(problem)
+    , settings(settings)
     , matrix(&problem.stiffness.blocks())
   {
     if (problem.constraints.partitioner()->size() > largest<dim>)
@@ -264,7 +319,7 @@ namespace Friction
   SolverReport
   CondensedSolver<dim>::solve(const TrescaFunctional<dim> &functional,
                               Iterate                      x,
-                              const SolverSettings        &settings,
+                              const By                     method,
                               const CoulombSettings       &limits,
                               const Progress              &progress)
   {
@@ -306,21 +361,13 @@ namespace Friction
       }
     const unsigned int first_own = first_of_own_contact_nodes();
 
-    const TrescaFunctional<dim> energy(small->problem);
-    const MonotoneSmoother<dim> smoother(small->problem, settings.local_solver);
-    Linearization<dim>     linearization(small->problem, settings.truncation);
-    DenseCorrection<dim>   correction(small->problem);
-    LineSearch<dim>        line_search(energy, 1., 0);
-    MonotoneMultigrid<dim> iteration(energy,
-                                     smoother,
-                                     linearization,
-                                     correction,
-                                     line_search,
-                                     settings.smoothing_steps);
-    CoulombSettings        its_limits(limits);
+    const bool      is_first = Utilities::MPI::this_mpi_process(comm) == 0;
+    const auto      solver   = is_first
+             ? std::make_unique<SmallSolver>(small->problem, settings)
+             : nullptr;
+    CoulombSettings its_limits(limits);
     its_limits.certificate_tolerance = std::numeric_limits<double>::infinity();
 
-    const bool is_first      = Utilities::MPI::this_mpi_process(comm) == 0;
     bool       has_converged = false;
     VectorType residual(x.u), image(small->u), start(small->u);
     for (unsigned int pass = 0; pass < passes; ++pass)
@@ -346,8 +393,8 @@ namespace Friction
         {
           const PhaseScope phase(comm, SolverPhase::coarsest);
           if (is_first)
-            report = CoulombSolver<dim>(iteration, its_limits)
-                       .solve(small->u, state, progress);
+            report =
+              solver->solve(method, small->u, state, its_limits, progress);
           share(report, small->u, state);
         }
         for (unsigned int k = 0; !is_first && k < report.cycles.size(); ++k)
@@ -391,8 +438,8 @@ namespace Friction
     report.costs         = phase_costs(comm) - before;
     report.matrix_memory = problem.stiffness.memory_consumption();
     report.solver_memory = memory_consumption() +
-      small->stiffness.memory_consumption() + smoother.memory_consumption() +
-      correction.memory_consumption();
+      small->stiffness.memory_consumption() +
+      (solver ? solver->memory_consumption() : 0);
     return report;
   }
 

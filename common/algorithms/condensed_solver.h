@@ -26,6 +26,9 @@ namespace Friction
    * the power 3/2 of the number of unknowns in two dimensions, and with its
    * square in three.
    *
+   * Where the laws themselves are the trouble, Newton's method solves the same
+   * small problem, see NewtonSolver and DenseNewtonStep.
+   *
    * All processes have the whole matrix and factorise it; the first one solves
    * for all of them.
    */
@@ -40,9 +43,11 @@ namespace Friction
      * Collective.
      * @param problem    kept by reference.
      * @param positions  of the nodes that this process owns.
+     * @param settings   sweeps and local solver.
      */
     CondensedSolver(const DiscreteProblem<dim>    &problem,
-                    const std::vector<Point<dim>> &positions);
+                    const std::vector<Point<dim>> &positions,
+                    const SolverSettings          &settings);
 
     ~CondensedSolver();
 
@@ -51,15 +56,22 @@ namespace Friction
      * takes more than most_cycles. The same on all processes. */
     bool is_worthwhile(const double n_cycles) const;
 
+    /// What solves the condensed problem.
+    enum class By
+    {
+      coulomb_solver,
+      newton_solver
+    };
+
     /**
      * As CoulombSolver::solve(); collective. The cycles that are reported are
-     * those of the condensed problem, which cost next to nothing.
+     * those of the condensed problem, which cost next to nothing, or steps of
+     * Newton's method.
      * @param functional  of the problem.
-     * @param settings    sweeps and local solver.
      */
     SolverReport solve(const TrescaFunctional<dim> &functional,
                        Iterate                      x,
-                       const SolverSettings        &settings,
+                       const By                     method,
                        const CoulombSettings       &limits,
                        const Progress              &progress);
 
@@ -68,6 +80,7 @@ namespace Friction
 
   private:
     const DiscreteProblem<dim> &problem;
+    const SolverSettings        settings;
 
     // The rows of all processes' nodes, on several processes; the matrix of the
     // problem, on one.
@@ -90,6 +103,9 @@ namespace Friction
 
     struct Small;
     std::unique_ptr<Small> make_small_problem(const VectorType &u) const;
+
+    // The first process has this for as long as it solves.
+    struct SmallSolver;
 
     void share(SolverReport &report, VectorType &u, ContactState &state) const;
 

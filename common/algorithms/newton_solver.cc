@@ -1,34 +1,16 @@
 #include <common/algorithms/newton_solver.h>
 #include <common/parallel/owned_values.h>
 #include <common/parallel/reductions.h>
-
-#include <deal.II/lac/solver_control.h>
-#include <deal.II/lac/solver_gmres.h>
-#include <deal.II/lac/vector_memory.h>
+#include <common/parallel/run_clock.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 
 namespace Friction
 {
   namespace
   {
-    // What GMRES asks of a matrix and of a preconditioner.
-    struct Operator
-    {
-      std::function<void(VectorType &, const VectorType &)> apply;
-
-      void
-      vmult(VectorType &result, const VectorType &argument) const
-      {
-        apply(result, argument);
-      }
-    };
-
-
-
     // Linear problems are solved by two digits at least; with less than that
     // phases are told wrongly.
     constexpr double largest_forcing = 1e-2;
@@ -39,185 +21,21 @@ namespace Friction
 
     // What is left of the largest violation may be rounding.
     constexpr double rounding_of_violations = 1e-12;
-
-    // Vectors that GMRES keeps before it starts anew.
-    constexpr unsigned int basis_size = 50;
-
-
-
-    void
-    copy_owned(VectorType &to, const VectorType &from)
-    {
-      std::copy_n(from.begin(), from.locally_owned_size(), to.begin());
-    }
   } // namespace
 
 
 
   template <int dim>
   NewtonSolver<dim>::NewtonSolver(const TrescaFunctional<dim> &functional,
-                                  const MonotoneSmoother<dim> &smoother,
-                                  Levels<dim>                 &levels,
-                                  TruncatedCorrection<dim>    &correction,
-                                  const unsigned int           smoothing_steps)
+                                  NewtonStep<dim>             &linear_solver)
     : functional(functional)
     , problem(functional.discrete_problem())
-    , levels(levels)
-    , correction(correction)
-    , smoothing_steps(smoothing_steps)
-    , truncation(problem)
-    , relaxation(problem, smoother)
-    , strip(problem)
+    , linear_solver(linear_solver)
+    , equations(problem)
     , laws(problem.contact.size())
-    , slopes(problem.contact.size())
     , residual(problem.constraints.partitioner())
     , image(residual)
-    , defect(residual)
-    , smoothed(residual)
-    , correction_part(residual)
   {}
-
-
-
-  template <int dim>
-  void
-  NewtonSolver<dim>::follow_phases()
-  {
-    for (unsigned int p = 0; p < laws.size(); ++p)
-      {
-        const SemismoothLaw<dim> &law     = laws[p];
-        const ContactNode<dim>   &node    = problem.contact[p];
-        NodeBlock<dim>            turning = zero_block<dim>();
-        slopes[p]                         = {};
-        if (law.tangent == SemismoothLaw<dim>::Tangent::slides)
-          for (unsigned int s = 0; s < node.n_free_tangents; ++s)
-            {
-              for (unsigned int d = 0; d < dim; ++d)
-                slopes[p][d] += law.slope[s] * node.frame[s + 1][d];
-              for (unsigned int t = 0; t < node.n_free_tangents; ++t)
-                for (unsigned int c = 0; c < dim; ++c)
-                  for (unsigned int r = 0; r < dim; ++r)
-                    turning[c * dim + r] += law.curvature[t * (dim - 1) + s] *
-                      node.frame[s + 1][r] * node.frame[t + 1][c];
-            }
-        truncation.set(p,
-                       truncation.projector(
-                         p,
-                         !law.in_contact,
-                         law.tangent != SemismoothLaw<dim>::Tangent::sticks),
-                       turning);
-      }
-    truncation.exchange();
-    levels.update(truncation.truncation());
-    relaxation.update(truncation.truncation(), slopes);
-    strip.update(truncation.truncation(), slopes, n_layers);
-  }
-
-
-
-  template <int dim>
-  void
-  NewtonSolver<dim>::apply_laws(VectorType &Av, const VectorType &v) const
-  {
-    for (unsigned int p = 0; p < laws.size(); ++p)
-      if (laws[p].tangent == SemismoothLaw<dim>::Tangent::slides)
-        {
-          const ContactNode<dim> &node   = problem.contact[p];
-          const double            normal = normal_component(node, Av);
-          const NodeValue<dim>    turning =
-            times<dim>(truncation.truncation().curvature(node.node).data(),
-                       v.begin() + dim * node.node);
-          for (unsigned int d = 0; d < dim; ++d)
-            Av.local_element(dim * node.node + d) +=
-              turning[d] - slopes[p][d] * normal;
-        }
-    truncation.truncation().apply(Av.begin());
-  }
-
-
-
-  template <int dim>
-  void
-  NewtonSolver<dim>::find_defect(const VectorType &r, const VectorType &v)
-  {
-    problem.stiffness.vmult(defect, v);
-    apply_laws(defect, v);
-    scale_owned(defect, -1.);
-    add_owned(defect, 1., r);
-  }
-
-
-
-  template <int dim>
-  void
-  NewtonSolver<dim>::precondition(VectorType &v, const VectorType &r)
-  {
-    smoothed = 0.;
-    relaxation.run(smoothed, r, {smoothing_steps, false}, &defect);
-    if (!strip.is_empty())
-      {
-        strip.add_solution(smoothed, defect);
-        find_defect(r, smoothed);
-      }
-    correction.apply(correction_part, defect);
-    add_owned(smoothed, 1., correction_part);
-    if (!strip.is_empty())
-      {
-        find_defect(r, smoothed);
-        strip.add_solution(smoothed, defect);
-      }
-    relaxation.run(smoothed, r, {smoothing_steps, true});
-    v = smoothed;
-  }
-
-
-
-  template <int dim>
-  typename NewtonSolver<dim>::LinearSolution
-  NewtonSolver<dim>::solve_linear(VectorType        &v,
-                                  const VectorType  &rhs,
-                                  const double       tolerance,
-                                  const unsigned int maximum_iterations)
-  {
-    // Ghosts are our own business.
-    const IndexSet &owned =
-      problem.constraints.partitioner()->locally_owned_range();
-    VectorType b(owned, problem.communicator()), x(b);
-    copy_owned(b, rhs);
-
-    VectorType     argument(residual), result_of(residual);
-    const Operator matrix = {[&](VectorType &result, const VectorType &of) {
-      copy_owned(argument, of);
-      problem.stiffness.vmult(result_of, argument);
-      apply_laws(result_of, argument);
-      copy_owned(result, result_of);
-    }};
-    const Operator preconditioner = {
-      [&](VectorType &result, const VectorType &of) {
-        copy_owned(argument, of);
-        precondition(result_of, argument);
-        copy_owned(result, result_of);
-      }};
-
-    LinearSolution result;
-    SolverControl  control(maximum_iterations, tolerance, false, false);
-    GrowingVectorMemory<VectorType> memory;
-    try
-      {
-        SolverFGMRES<VectorType>(
-          control, SolverFGMRES<VectorType>::AdditionalData(basis_size))
-          .solve(matrix, x, b, preconditioner);
-      }
-    catch (const SolverControl::NoConvergence &)
-      {
-        // What there is of a step may do.
-        result.converged = false;
-      }
-    memory.release_unused_memory();
-    copy_owned(v, x);
-    result.iterations = control.last_step();
-    return result;
-  }
 
 
 
@@ -279,39 +97,6 @@ namespace Friction
 
 
   template <int dim>
-  void
-  NewtonSolver<dim>::eliminate_known(VectorType &step, VectorType &rhs)
-  {
-    step = 0.;
-    rhs  = residual;
-    for (unsigned int p = 0; p < laws.size(); ++p)
-      {
-        const ContactNode<dim>   &node = problem.contact[p];
-        const SemismoothLaw<dim> &law  = laws[p];
-        const unsigned int        dof  = dim * node.node;
-        const bool slides = law.tangent == SemismoothLaw<dim>::Tangent::slides;
-        const double normal = normal_component(node, residual);
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            double known = 0, value = normal * node.normal()[d];
-            for (unsigned int e = 0; e < dim; ++e)
-              known += law.known_step[e] * node.frame[e][d];
-            for (unsigned int t = 0; t < node.n_free_tangents; ++t)
-              value += law.rhs[t] * node.frame[t + 1][d];
-            step.local_element(dof + d) = known;
-            if (slides)
-              rhs.local_element(dof + d) = value;
-          }
-      }
-    truncation.truncation().apply(rhs.begin());
-    problem.stiffness.vmult(image, step);
-    apply_laws(image, step);
-    add_owned(rhs, -1., image);
-  }
-
-
-
-  template <int dim>
   MultigridResult
   NewtonSolver<dim>::solve(VectorType            &u,
                            ContactState          &state,
@@ -335,18 +120,19 @@ namespace Friction
     unsigned int n_short = 0;
     for (steps = 0; steps < most_steps && n_short < most_short_steps;)
       {
-        follow_phases();
-        eliminate_known(step, rhs);
-        const double size =
-          std::sqrt(sum_over_processes(dot_owned(rhs, rhs), comm));
+        equations.update(laws);
+        linear_solver.update(equations);
+        equations.eliminate_known(laws, residual, step, rhs);
+        const bool is_zero =
+          !(sum_over_processes(dot_owned(rhs, rhs), comm) > 0.);
         unsigned int most = limits.maximum_cycles -
           static_cast<unsigned int>(result.cycles.size());
         if (limits.budget)
           most = std::min(most, limits.budget->cycles_left());
-        LinearSolution linear;
-        if (size > 0)
+        typename NewtonStep<dim>::Outcome linear;
+        if (!is_zero)
           {
-            linear = solve_linear(unknown, rhs, forcing * size, most);
+            linear = linear_solver.solve(unknown, rhs, forcing, most);
             add_owned(step, 1., unknown);
           }
 
@@ -387,7 +173,7 @@ namespace Friction
             {dot_owned(step, image),
              dot_owned(u, problem.forces) - dot_owned(u, residual),
              functional.energy_share(u, residual, state),
-             1. * truncation.truncation().n_truncated_components()}},
+             1. * equations.truncation().n_truncated_components()}},
           comm);
         const double norm =
           std::sqrt(std::max(sums[1], smallest_squared_norm(problem, u)));
@@ -408,7 +194,7 @@ namespace Friction
         // With the right phases a step is wrong by what is left of the linear
         // problem, and in three dimensions by its square.
         const double left =
-          std::max(forcing, dim == 3 ? increment : 0.) * increment;
+          std::max(linear.accuracy, dim == 3 ? increment : 0.) * increment;
         const bool settled =
           length == 1. && linear.converged && same_phases(old_laws);
         result.algebraic_error = norm * left;
@@ -438,17 +224,50 @@ namespace Friction
   std::size_t
   NewtonSolver<dim>::memory_consumption() const
   {
-    std::size_t bytes = correction.memory_consumption() +
-      relaxation.memory_consumption() + strip.memory_consumption();
-    for (const VectorType *vector :
-         {&residual, &image, &defect, &smoothed, &correction_part})
-      bytes += vector->memory_consumption();
-    return bytes + laws.capacity() * sizeof(SemismoothLaw<dim>) +
-      slopes.capacity() * sizeof(NodeValue<dim>);
+    return linear_solver.memory_consumption() +
+      2 * residual.memory_consumption() +
+      laws.capacity() * sizeof(SemismoothLaw<dim>) +
+      equations.slopes().capacity() * sizeof(NodeValue<dim>);
+  }
+
+
+
+  template <int dim>
+  SolverReport
+  solve_by_newton(NewtonSolver<dim>     &newton,
+                  VectorType            &u,
+                  ContactState          &state,
+                  const CoulombSettings &limits,
+                  const Progress        &progress)
+  {
+    const TrescaFunctional<dim> &functional = newton.tresca_functional();
+    const MPI_Comm   comm   = functional.discrete_problem().communicator();
+    const PhaseCosts before = phase_costs(comm);
+    SolverReport     report;
+    report.set_result(newton.solve(u, state, limits.limits, progress));
+    certify(report, functional, u, state);
+    if (!(report.certificate.largest() <= limits.certificate_tolerance))
+      report.converged = false;
+    report.costs = phase_costs(comm) - before;
+    report.matrix_memory =
+      functional.discrete_problem().stiffness.memory_consumption();
+    report.solver_memory = newton.memory_consumption();
+    return report;
   }
 
 
 
   template class NewtonSolver<2>;
   template class NewtonSolver<3>;
+
+  template SolverReport solve_by_newton(NewtonSolver<2> &,
+                                        VectorType &,
+                                        ContactState &,
+                                        const CoulombSettings &,
+                                        const Progress &);
+  template SolverReport solve_by_newton(NewtonSolver<3> &,
+                                        VectorType &,
+                                        ContactState &,
+                                        const CoulombSettings &,
+                                        const Progress &);
 } // namespace Friction

@@ -41,6 +41,10 @@ namespace Friction
 
 
 
+    constexpr const char *on_contact_nodes = " on contact nodes alone";
+
+
+
     // A user who chooses other parts wants to see them work.
     bool
     has_defaults(const SolverSettings &settings)
@@ -206,15 +210,37 @@ namespace Friction
     if (!(settings.nearly_incompressible || mostly_lines_in_space() ||
           materials_do_jump() || (others_have_failed && !much_friction())))
       return false;
-    if (!condensed)
-      condensed = std::make_unique<CondensedSolver<dim>>(
-        problem, node_positions(levels.dof_handler(), problem.constraints));
     const bool are_dearer =
       settings.nearly_incompressible && settings.energy_tolerance == 0.;
-    return condensed->is_worthwhile(others_have_failed
-                                      ? CondensedSolver<dim>::most_cycles
-                                      : are_dearer ? cycles_to_the_end<dim>
-                                                   : cycles_to_expect);
+    return contact_nodes_alone_take_less(others_have_failed
+                                           ? CondensedSolver<dim>::most_cycles
+                                           : are_dearer ? cycles_to_the_end<dim>
+                                                        : cycles_to_expect);
+  }
+
+
+
+  template <int dim>
+  bool
+  SafeguardedSolver<dim>::contact_nodes_alone_take_less(const double n_cycles)
+  {
+    if (!condensed)
+      condensed = std::make_unique<CondensedSolver<dim>>(
+        problem,
+        node_positions(levels.dof_handler(), problem.constraints),
+        settings);
+    return condensed->is_worthwhile(n_cycles);
+  }
+
+
+
+  // A step takes a factorisation there, and some iterations elsewhere.
+  template <int dim>
+  bool
+  SafeguardedSolver<dim>::newton_is_for_contact_nodes_alone()
+  {
+    return settings.condensation && has_defaults(settings) &&
+      contact_nodes_alone_take_less(cycles_to_the_end<dim>);
   }
 
 
@@ -229,7 +255,7 @@ namespace Friction
     return condensed->solve(
       iteration.functional(),
       Iterate(search.u, search.state, problem.has_coulomb_friction()),
-      settings,
+      CondensedSolver<dim>::By::coulomb_solver,
       its_settings,
       search.progress);
   }
@@ -290,6 +316,17 @@ namespace Friction
     mixed.mixed_outer_iterations   = 10;
     mixed.maximum_outer_iterations =
       std::max(200u, settings.maximum_outer_iterations);
+    if (newton_is_for_contact_nodes_alone())
+      {
+        const SolverReport report =
+          condensed->solve(iteration.functional(),
+                           Iterate(search.u, search.state, true),
+                           CondensedSolver<dim>::By::coulomb_solver,
+                           mixed,
+                           search.progress);
+        if (newton_is_for_contact_nodes_alone())
+          return report;
+      }
     SolverReport report = CoulombSolver<dim>(iteration, mixed)
                             .solve(search.u, search.state, search.progress);
     if (report.inner_converged || budget->is_spent())
@@ -314,33 +351,36 @@ namespace Friction
   SolverReport
   SafeguardedSolver<dim>::newton_method(const Search &search)
   {
+    const CoulombSettings its_settings = later_settings(search.accuracy);
+    if (newton_is_for_contact_nodes_alone())
+      {
+        const SolverReport report = condensed->solve(
+          iteration.functional(),
+          Iterate(search.u, search.state, problem.has_coulomb_friction()),
+          CondensedSolver<dim>::By::newton_solver,
+          its_settings,
+          search.progress);
+        // Unless the matrix could not be factorised.
+        if (newton_is_for_contact_nodes_alone())
+          return report;
+      }
+
     if (!newton)
       {
         truncated = std::make_unique<TruncatedCorrection<dim>>(
           levels, settings.cycle, settings.coarse_smoothing_steps);
-        newton =
-          std::make_unique<NewtonSolver<dim>>(iteration.functional(),
-                                              iteration.leading_smoother(),
-                                              levels,
-                                              *truncated,
-                                              settings.smoothing_steps);
+        newton_step = std::make_unique<MultigridNewtonStep<dim>>(
+          problem,
+          iteration.leading_smoother(),
+          levels,
+          *truncated,
+          settings.smoothing_steps);
+        newton = std::make_unique<NewtonSolver<dim>>(iteration.functional(),
+                                                     *newton_step);
       }
-    SolverReport          report;
-    const PhaseCosts      before = phase_costs(problem.communicator());
-    const MultigridResult result =
-      newton->solve(search.u,
-                    search.state,
-                    later_settings(search.accuracy).limits,
-                    search.progress);
-    report.set_result(result);
-    certify(report, iteration.functional(), search.u, search.state);
-    if (!(report.certificate.largest() <=
-          later_settings(search.accuracy).certificate_tolerance))
-      report.converged = false;
-    report.costs         = phase_costs(problem.communicator()) - before;
-    report.matrix_memory = problem.stiffness.memory_consumption();
-    report.solver_memory = iteration.leading_smoother().memory_consumption() +
-      newton->memory_consumption();
+    SolverReport report = solve_by_newton(
+      *newton, search.u, search.state, its_settings, search.progress);
+    report.solver_memory += iteration.leading_smoother().memory_consumption();
     return report;
   }
 
@@ -400,166 +440,351 @@ namespace Friction
 
 
 
+  // One call of solve(): what has been tried, and in which order.
   template <int dim>
-  SolverReport
-  SafeguardedSolver<dim>::solve(VectorType     &u,
-                                ContactState   &state,
-                                const Progress &progress,
-                                const double    accuracy)
+  class SafeguardedSolver<dim>::Attempts
   {
-    const RunScope  part(problem.communicator(), RunPart::solution);
-    CoulombSettings first(settings);
-    ease(first, accuracy);
-    if (!settings.safeguards)
-      return CoulombSolver<dim>(iteration, first).solve(u, state, progress);
+  public:
+    Attempts(SafeguardedSolver<dim> &solver, const Search &search);
 
-    const bool         coulomb       = problem.has_coulomb_friction();
-    const MPI_Comm     comm          = problem.communicator();
-    const PhaseCosts   before        = phase_costs(comm);
-    const VectorType   initial       = u;
-    const ContactState initial_state = state;
-    const std::string  name          = name_of(problem, settings);
+    SolverReport run();
+
+  private:
+    SafeguardedSolver<dim> &solver;
+    const Search           &search;
+    DiscreteProblem<dim>   &problem;
+    const MPI_Comm          comm;
+    const bool              coulomb;
+    const std::string       algorithm; // its name
+    const Method            begin_with;
+    const VectorType        initial;
+    const ContactState      initial_state;
+
+    // Of the last attempt, and of all.
+    SolverReport report, all;
 
     // If nothing succeeds, what violates the law least is returned.
-    SolverReport report, all;
     double       smallest_violation = std::numeric_limits<double>::infinity();
-    VectorType   best               = initial;
-    ContactState best_state         = initial_state;
-    const auto   attempt            = [&](const std::string &attempt_name,
-                             const auto        &method) {
-      report         = method(Search{u, state, progress, accuracy});
-      const double v = report.certificate.largest();
-      if (!report.converged && v < smallest_violation &&
-          is_finite(u, state, comm))
-        {
-          smallest_violation = v;
-          best               = u;
-          best_state         = state;
-        }
-      add_attempt(all, attempt_name, report);
-    };
-    const auto start_anew = [&]() {
-      u     = initial;
-      state = initial_state;
-    };
-    bool       is_algebraic              = false;
-    const auto try_algebraic_corrections = [&]() {
-      if (report.converged || is_algebraic || !budget->begin_attempt())
-        return;
-      // A step of Newton's method may have gone into the obstacle.
-      if (all.attempts.size() > 1 || !is_finite(u, state, comm))
-        start_anew();
-      is_algebraic = true;
-      attempt(name + " with algebraic corrections", [&](const Search &search) {
-        return algebraic_corrections(search);
-      });
-      if (report.converged)
-        next_method = Method::algebraic;
-    };
-    bool       is_aggregate   = false;
-    const auto try_aggregates = [&]() {
-      if (report.converged || is_aggregate || !budget->begin_attempt())
-        return;
+    VectorType   best;
+    ContactState best_state;
+
+    // What has been tried.
+    bool is_condensed = false, is_aggregate = false, is_algebraic = false,
+         is_newton = false, is_continued = false, is_mixed = false;
+
+    // Whether there is anything left to do and to try it with; notes that it is
+    // being tried.
+    bool begin(bool &is_tried, const bool is_last = false);
+
+    template <typename MethodOfSolver>
+    void attempt(const std::string &name, const MethodOfSolver &method);
+
+    void start_anew();
+
+    // A step of Newton's method may have gone into the obstacle; phases that
+    // Algorithm 3 alone has begun to find are a good guess.
+    void start_anew_unless_guess_is_better();
+
+    void try_algorithm(
+      const unsigned int its_patience,
+      const unsigned int worthwhile = std::numeric_limits<unsigned int>::max());
+
+    void try_contact_nodes_alone();
+    void try_aggregates();
+    void try_algebraic_corrections();
+    void try_newton();
+    void try_continuation(const bool is_last);
+    void try_mixed_algorithm_2(const bool is_last);
+
+    // Newton's method and those that follow it are for contact nodes alone
+    // where that is cheap.
+    std::string where_newton_is() const;
+
+    void try_what_knows_the_law();
+    void try_what_has_solved_the_mesh_before();
+  };
+
+
+
+  template <int dim>
+  SafeguardedSolver<dim>::Attempts::Attempts(SafeguardedSolver<dim> &solver,
+                                             const Search           &search)
+    : solver(solver)
+    , search(search)
+    , problem(solver.problem)
+    , comm(problem.communicator())
+    , coulomb(problem.has_coulomb_friction())
+    , algorithm(name_of(problem, solver.settings))
+    , begin_with(solver.next_method)
+    , initial(search.u)
+    , initial_state(search.state)
+    , best(search.u)
+    , best_state(search.state)
+  {}
+
+
+
+  template <int dim>
+  bool
+  SafeguardedSolver<dim>::Attempts::begin(bool &is_tried, const bool is_last)
+  {
+    if (report.converged || is_tried || !solver.budget->begin_attempt(is_last))
+      return false;
+    is_tried = true;
+    return true;
+  }
+
+
+
+  template <int dim>
+  template <typename MethodOfSolver>
+  void
+  SafeguardedSolver<dim>::Attempts::attempt(const std::string    &name,
+                                            const MethodOfSolver &method)
+  {
+    report         = method();
+    const double v = report.certificate.largest();
+    if (!report.converged && v < smallest_violation &&
+        is_finite(search.u, search.state, comm))
+      {
+        smallest_violation = v;
+        best               = search.u;
+        best_state         = search.state;
+      }
+    add_attempt(all, name, report);
+  }
+
+
+
+  template <int dim>
+  void
+  SafeguardedSolver<dim>::Attempts::start_anew()
+  {
+    search.u     = initial;
+    search.state = initial_state;
+  }
+
+
+
+  template <int dim>
+  void
+  SafeguardedSolver<dim>::Attempts::start_anew_unless_guess_is_better()
+  {
+    if (all.attempts.size() > 1 || is_newton ||
+        !is_finite(search.u, search.state, comm))
       start_anew();
-      is_aggregate = true;
-      attempt(
-        name + " with levels made of the matrix",
-        [&](const Search &search) { return aggregate_corrections(search); });
-      aggregates_have_failed = !report.converged;
-      if (report.converged)
-        next_method = report.cycles.size() > too_many_for_the_next
-          ? Method::algorithm
-          : Method::aggregates;
-    };
-    bool       is_newton  = false;
-    const auto try_newton = [&]() {
-      if (report.converged || is_newton || !budget->begin_attempt())
-        return;
+  }
+
+
+
+  template <int dim>
+  void
+  SafeguardedSolver<dim>::Attempts::try_algorithm(
+    const unsigned int its_patience, const unsigned int worthwhile)
+  {
+    CoulombSettings first(solver.settings);
+    ease(first, search.accuracy);
+    first.limits.patience          = its_patience;
+    first.limits.worthwhile_cycles = worthwhile;
+    first.limits.budget            = solver.budget;
+    if (!all.attempts.empty())
       start_anew();
-      is_newton = true;
-      attempt("Newton's method",
-              [&](const Search &search) { return newton_method(search); });
-      if (report.converged)
-        next_method = Method::newton;
-    };
+    attempt(algorithm, [&]() {
+      return CoulombSolver<dim>(solver.iteration, first)
+        .solve(search.u, search.state, search.progress);
+    });
+    solver.next_method = Method::algorithm;
+  }
 
-    const auto try_algorithm = [&](const unsigned int its_patience,
-                                   const unsigned int worthwhile) {
-      first.limits.patience          = its_patience;
-      first.limits.worthwhile_cycles = worthwhile;
-      first.limits.budget            = budget;
-      if (!all.attempts.empty())
-        start_anew();
-      attempt(name, [&](const Search &search) {
-        return CoulombSolver<dim>(iteration, first)
-          .solve(search.u, search.state, search.progress);
-      });
-      next_method = Method::algorithm;
-    };
-    constexpr unsigned int any_number =
-      std::numeric_limits<unsigned int>::max();
 
-    const Method begin_with = next_method;
 
-    bool       is_condensed            = false;
-    const auto try_contact_nodes_alone = [&]() {
-      const bool others_have_failed =
-        !all.attempts.empty() || begin_with == Method::contact_nodes;
-      if (report.converged || is_condensed ||
-          !contact_nodes_alone_are_better(others_have_failed) ||
-          !budget->begin_attempt())
-        return;
-      // Phases that one attempt has begun to find are a good guess.
-      if (all.attempts.size() > 1 || !is_finite(u, state, comm))
-        start_anew();
-      is_condensed = true;
-      attempt(
-        (coulomb ? name : "the iteration") + " on contact nodes alone",
-        [&](const Search &search) { return contact_nodes_alone(search); });
-      if (report.converged && others_have_failed)
-        next_method = Method::contact_nodes;
-    };
+  template <int dim>
+  void
+  SafeguardedSolver<dim>::Attempts::try_contact_nodes_alone()
+  {
+    const bool others_have_failed =
+      !all.attempts.empty() || begin_with == Method::contact_nodes;
+    if (report.converged || is_condensed ||
+        !solver.contact_nodes_alone_are_better(others_have_failed) ||
+        !begin(is_condensed))
+      return;
+    start_anew_unless_guess_is_better();
+    attempt((coulomb ? algorithm : "the iteration") + on_contact_nodes,
+            [&]() { return solver.contact_nodes_alone(search); });
+    if (report.converged && others_have_failed)
+      solver.next_method = Method::contact_nodes;
+  }
 
-    // Here it is known beforehand what coarse levels are worth.
-    try_contact_nodes_alone();
 
-    // What has solved the mesh before is likely to solve this one.
-    if (begin_with == Method::newton && much_friction())
+
+  template <int dim>
+  void
+  SafeguardedSolver<dim>::Attempts::try_aggregates()
+  {
+    if (!begin(is_aggregate))
+      return;
+    start_anew();
+    attempt(algorithm + " with levels made of the matrix",
+            [&]() { return solver.aggregate_corrections(search); });
+    solver.aggregates_have_failed = !report.converged;
+    if (report.converged)
+      solver.next_method = report.cycles.size() > too_many_for_the_next
+        ? Method::algorithm
+        : Method::aggregates;
+  }
+
+
+
+  template <int dim>
+  void
+  SafeguardedSolver<dim>::Attempts::try_algebraic_corrections()
+  {
+    if (!begin(is_algebraic))
+      return;
+    start_anew_unless_guess_is_better();
+    attempt(algorithm + " with algebraic corrections",
+            [&]() { return solver.algebraic_corrections(search); });
+    if (report.converged)
+      solver.next_method = Method::algebraic;
+  }
+
+
+
+  template <int dim>
+  std::string
+  SafeguardedSolver<dim>::Attempts::where_newton_is() const
+  {
+    return solver.newton_is_for_contact_nodes_alone() ? on_contact_nodes : "";
+  }
+
+
+
+  template <int dim>
+  void
+  SafeguardedSolver<dim>::Attempts::try_newton()
+  {
+    if (!begin(is_newton))
+      return;
+    start_anew();
+    attempt("Newton's method" + where_newton_is(),
+            [&]() { return solver.newton_method(search); });
+    if (report.converged)
+      solver.next_method = Method::newton;
+  }
+
+
+
+  template <int dim>
+  void
+  SafeguardedSolver<dim>::Attempts::try_continuation(const bool is_last)
+  {
+    if (!coulomb || !begin(is_continued, is_last))
+      return;
+    start_anew();
+    const std::string where  = where_newton_is();
+    double            solved = 0;
+    attempt("", [&]() { return solver.continuation(search, solved); });
+    std::ostringstream text;
+    text << "continuation from less friction" << where
+         << ", up to the coefficient " << solved << ',';
+    all.attempts.back().name = text.str();
+    if (report.converged)
+      solver.next_method = Method::newton;
+  }
+
+
+
+  template <int dim>
+  void
+  SafeguardedSolver<dim>::Attempts::try_mixed_algorithm_2(const bool is_last)
+  {
+    if (!coulomb || !begin(is_mixed, is_last))
+      return;
+    search.u     = best;
+    search.state = best_state;
+    attempt("Algorithm 2 with mixed normal forces" + where_newton_is(),
+            [&]() { return solver.mixed_algorithm_2(search); });
+  }
+
+
+
+  // What fails on contact nodes alone does not fail for want of good levels.
+  template <int dim>
+  void
+  SafeguardedSolver<dim>::Attempts::try_what_knows_the_law()
+  {
+    if (report.converged || !is_condensed ||
+        !solver.newton_is_for_contact_nodes_alone())
+      return;
+    try_newton();
+    try_continuation(/*is_last =*/false);
+    try_mixed_algorithm_2(/*is_last =*/false);
+  }
+
+
+
+  // It is likely to solve this one.
+  template <int dim>
+  void
+  SafeguardedSolver<dim>::Attempts::try_what_has_solved_the_mesh_before()
+  {
+    const bool much_friction = solver.much_friction();
+    if (begin_with == Method::newton && much_friction)
       try_newton();
-    else if (begin_with == Method::aggregates && has_defaults(settings) &&
-             !much_friction())
+    else if (begin_with == Method::aggregates &&
+             has_defaults(solver.settings) && !much_friction)
       try_aggregates();
     else if (begin_with == Method::algebraic ||
              (begin_with == Method::contact_nodes && !is_condensed &&
-              !much_friction()))
+              !much_friction))
       {
         // Much dearer, so that others may try once what they can do on this
         // mesh.
-        if (!aggregates_have_failed && coarse_cells_may_be_to_blame())
+        if (!solver.aggregates_have_failed &&
+            solver.coarse_cells_may_be_to_blame())
           try_aggregates();
         try_algebraic_corrections();
       }
+  }
+
+
+
+  template <int dim>
+  SolverReport
+  SafeguardedSolver<dim>::Attempts::run()
+  {
+    const SolverSettings &settings      = solver.settings;
+    const bool            much_friction = solver.much_friction();
+    const PhaseCosts      before        = phase_costs(comm);
+
+    // Here it is known beforehand what coarse levels are worth.
+    if (begin_with == Method::newton &&
+        solver.newton_is_for_contact_nodes_alone())
+      try_newton();
+    try_contact_nodes_alone();
+    try_what_knows_the_law();
+    try_what_has_solved_the_mesh_before();
 
     // Whether there is something else to try soon.
-    const bool may_aggregate =
-      !report.converged && !is_aggregate && coarse_cells_may_be_to_blame();
+    const bool may_aggregate = !report.converged && !is_aggregate &&
+      solver.coarse_cells_may_be_to_blame();
     if (!report.converged)
       {
-        budget->begin_attempt();
-        if (much_friction())
-          try_algorithm(short_patience,
-                        has_defaults(settings) && !is_newton ? many_cycles
-                                                             : any_number);
+        solver.budget->begin_attempt();
+        if (much_friction && has_defaults(settings) && !is_newton)
+          try_algorithm(short_patience, many_cycles);
+        else if (much_friction)
+          try_algorithm(short_patience);
         else if (may_aggregate)
           try_algorithm(jump_patience, many_cycles);
         else
-          try_algorithm(patience, any_number);
+          try_algorithm(patience);
         if (report.converged && !is_newton && has_defaults(settings) &&
-            much_friction() && report.cycles.size() > many_for_the_next)
-          next_method = Method::newton;
+            much_friction && report.cycles.size() > many_for_the_next)
+          solver.next_method = Method::newton;
         if (report.converged && all.attempts.size() == 1)
           {
-            report.next_method = next_method;
+            report.next_method = solver.next_method;
             return report;
           }
       }
@@ -571,52 +796,51 @@ namespace Friction
     if (may_aggregate)
       try_aggregates();
     if (!outer_failure)
-      try_contact_nodes_alone();
+      {
+        try_contact_nodes_alone();
+        try_what_knows_the_law();
+      }
     // It has not had much time.
-    if (!report.converged && may_aggregate && budget->begin_attempt())
-      try_algorithm(patience, any_number);
-    if (!outer_failure && !much_friction())
+    if (!report.converged && may_aggregate && solver.budget->begin_attempt())
+      try_algorithm(patience);
+    if (!outer_failure && !much_friction)
       try_algebraic_corrections();
     try_newton();
-    if (!report.converged && coulomb &&
-        budget->begin_attempt(/*is last =*/true))
-      {
-        start_anew();
-        double solved = 0;
-        attempt("", [&](const Search &search) {
-          return continuation(search, solved);
-        });
-        std::ostringstream text;
-        text << "continuation from less friction, up to the coefficient "
-             << solved << ',';
-        all.attempts.back().name = text.str();
-        if (report.converged)
-          next_method = Method::newton;
-      }
+    try_continuation(/*is_last =*/true);
     try_algebraic_corrections();
-    if (!report.converged && coulomb &&
-        budget->begin_attempt(/*is last =*/true))
-      {
-        u     = best;
-        state = best_state;
-        attempt(
-          "Algorithm 2 with mixed normal forces",
-          [&](const Search &search) { return mixed_algorithm_2(search); });
-      }
+    try_mixed_algorithm_2(/*is_last =*/true);
 
     // What is reported of a failure is what is returned, and not the end of an
     // attempt that has been thrown away.
     if (!report.converged)
       {
-        u     = best;
-        state = best_state;
-        certify(report, iteration.functional(), u, state);
+        search.u     = best;
+        search.state = best_state;
+        certify(report, solver.iteration.functional(), search.u, search.state);
       }
     report.cycles      = all.cycles;
     report.attempts    = all.attempts;
     report.costs       = phase_costs(comm) - before;
-    report.next_method = next_method;
+    report.next_method = solver.next_method;
     return report;
+  }
+
+
+
+  template <int dim>
+  SolverReport
+  SafeguardedSolver<dim>::solve(VectorType     &u,
+                                ContactState   &state,
+                                const Progress &progress,
+                                const double    accuracy)
+  {
+    const RunScope part(problem.communicator(), RunPart::solution);
+    const Search   search{u, state, progress, accuracy};
+    if (settings.safeguards)
+      return Attempts(*this, search).run();
+    CoulombSettings only(settings);
+    ease(only, accuracy);
+    return CoulombSolver<dim>(iteration, only).solve(u, state, progress);
   }
 
 

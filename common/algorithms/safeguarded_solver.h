@@ -6,6 +6,7 @@
 #include <common/algorithms/newton_solver.h>
 #include <common/iteration/aggregate_correction.h>
 #include <common/iteration/algebraic_correction.h>
+#include <common/iteration/multigrid_newton_step.h>
 #include <common/iteration/truncated_correction.h>
 
 #include <memory>
@@ -23,7 +24,9 @@ namespace Friction
    *    materials jump, or are nearly incompressible, or most nodes of a body in
    *    three dimensions are in lines. There have to be so few unknowns that
    *    this takes no longer than cycles, and with much friction it has to show
-   *    soon that it gets somewhere;
+   *    soon that it gets somewhere. What fails there does not fail for want of
+   *    good levels, so that what knows the law is tried next: 6., 7. and 9., on
+   *    contact nodes alone as well;
    * 2. the algorithm of the settings, by default Algorithm 3. With much
    *    friction, or where materials jump, it has to show soon that it gets
    *    somewhere;
@@ -39,7 +42,8 @@ namespace Friction
    *    not much friction: then coarse levels are the trouble, for example
    *    because cells are short in two of three directions;
    * 6. Newton's method, if it has not been tried yet: where there is much
-   *    friction, the law is the trouble;
+   *    friction, the law is the trouble. If contact nodes alone take no longer
+   *    than some cycles, so does each of its steps;
    * 7. continuation by the same method: first the problem with less friction,
    *    and its solution as initial guess for more, until all friction is there;
    * 8. algebraic corrections, if they have not been tried yet;
@@ -57,16 +61,16 @@ namespace Friction
    *
    * All attempts of all calls of solve() together take
    * SolverSettings::total_cycles cycles at most, but for one in each of them,
-   * and each attempt half of those that are left, continuation and the last one
-   * all, so that a problem without hope, or a force that cannot be reached,
-   * comes to an end. Without Coulomb's friction the problem is convex, and 7
-   * and 9 are left out.
+   * and each attempt half of those that are left, 7. and 9. all if they come in
+   * this order, so that a problem without hope, or a force that cannot be
+   * reached, comes to an end. Without Coulomb's friction the problem is convex,
+   * and 7 and 9 are left out.
    *
    * What has solved one problem is tried first on the next one, in the next
    * call of solve() and, by SolverReport::next_method, on the next mesh, 3.
    * before 5. if that has not failed on the same mesh; but Newton's method only
-   * with much friction. If contact nodes alone have, and would take too long on
-   * the next mesh, 5. follows there at once.
+   * with much friction or on contact nodes alone. If contact nodes alone have,
+   * and would take too long on the next mesh, 5. follows there at once.
    */
   template <int dim>
   class SafeguardedSolver
@@ -126,6 +130,7 @@ namespace Friction
     std::unique_ptr<TruncatedCorrection<dim>> truncated;
     std::unique_ptr<AggregateCorrection<dim>> aggregates;
     std::unique_ptr<AlgebraicCorrection<dim>> algebraic;
+    std::unique_ptr<NewtonStep<dim>>          newton_step;
     std::unique_ptr<NewtonSolver<dim>>        newton;
     std::unique_ptr<CondensedSolver<dim>>     condensed;
     LineSearch<dim>                           whole_steps;
@@ -138,6 +143,9 @@ namespace Friction
       const Progress &progress;
       const double    accuracy; // as in solve()
     };
+
+    // In which order.
+    class Attempts;
 
     // The law is to blame if something fails.
     bool much_friction() const;
@@ -153,6 +161,10 @@ namespace Friction
     bool contact_nodes_alone_are_better(const bool others_have_failed);
 
     SolverReport contact_nodes_alone(const Search &search);
+
+    bool contact_nodes_alone_take_less(const double n_cycles);
+
+    bool newton_is_for_contact_nodes_alone();
 
     SolverReport aggregate_corrections(const Search &search);
 

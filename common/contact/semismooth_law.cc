@@ -199,7 +199,11 @@ namespace Friction
     if (state.sticks(p) || norm_of(at.slip) == 0)
       stick(law, at, 0.);
     else
-      slide_along_slip(law, at, F, F * state.normal_force(p), !coulomb);
+      {
+        slide_along_slip(law, at, F, F * state.normal_force(p), !coulomb);
+        for (unsigned int t = 0; t < at.n_free && !at.slip_is_prescribed(); ++t)
+          law.direction[t] = at.slip[t] / norm_of(at.slip);
+      }
     return law;
   }
 

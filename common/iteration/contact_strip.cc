@@ -1,4 +1,5 @@
 #include <common/iteration/contact_strip.h>
+#include <common/iteration/newton_equations.h>
 #include <common/parallel/reductions.h>
 #include <common/parallel/run_clock.h>
 
@@ -148,14 +149,7 @@ namespace Friction
                 NodeBlock<dim> full;
                 std::copy_n(A.block(e), dim * dim, full.begin());
                 full = times<dim>(full, current->projector(other));
-                for (unsigned int c = 0; c < dim; ++c)
-                  {
-                    double normal = 0;
-                    for (unsigned int d = 0; d < dim; ++d)
-                      normal += slider->normal()[d] * full[c * dim + d];
-                    for (unsigned int r = 0; r < dim; ++r)
-                      block[c * dim + r] -= slope[r] * normal;
-                  }
+                subtract_change_of_bound<dim>(block, slope, *slider, full);
               }
             if (other == node)
               {

@@ -1,10 +1,11 @@
-// CondensedSolver against CoulombSolver with corrections from the whole matrix,
-// which share the relaxation but neither matrix nor factors: the same
-// displacements, normal forces and phases, for all laws of friction, on curved
-// bodies and meshes with hanging nodes, on any number of processes; the second
-// call has nothing left to do. Histories and platens come out the same with and
-// without it. Where it knows that coarse levels will not do,
-// SafeguardedSolver begins with it.
+// CondensedSolver, which has CoulombSolver or Newton's method for the condensed
+// problem, against CoulombSolver with corrections from the whole matrix, which
+// shares the relaxation but neither matrix nor factors: the same displacements,
+// normal forces and phases, for all laws of friction, on curved bodies and
+// meshes with hanging nodes, on any number of processes; the second call has
+// nothing left to do. Histories and platens come out the same with and without
+// it. Where it knows that coarse levels will not do, SafeguardedSolver begins
+// with it.
 
 #include <common/algorithms/condensed_solver.h>
 #include <common/algorithms/nested_iteration.h>
@@ -41,60 +42,77 @@ namespace test_contact_nodes_alone
     MonotoneMultigrid<dim>   iteration(
       functional, smoother, linearization, correction, line_search);
 
-    VectorType   u = admissible_start(whole.discretization), v = u;
-    ContactState state(problem.contact.size(), problem.has_friction()),
-      other = state;
+    VectorType   u = admissible_start(whole.discretization);
+    ContactState state(problem.contact.size(), problem.has_friction());
     for (unsigned int p = 0; p < state.size(); ++p)
-      {
-        state.set_normal_force(p, 1e-3 * problem.contact[p].measure);
-        other.set_normal_force(p, state.normal_force(p));
-      }
+      state.set_normal_force(p, 1e-3 * problem.contact[p].measure);
+    const VectorType   start       = u;
+    const ContactState start_state = state;
     check_everywhere(
       CoulombSolver<dim>(iteration, limits).solve(u, state).converged,
       "  solved by the whole matrix");
 
+    using By = typename CondensedSolver<dim>::By;
     CondensedSolver<dim> condensed(
       problem,
-      node_positions(whole.discretization.dof_handler(), problem.constraints));
+      node_positions(whole.discretization.dof_handler(), problem.constraints),
+      settings);
     check_everywhere(condensed.is_worthwhile(24.), "  the body is small");
-    const auto solve = [&]() {
-      return condensed.solve(functional,
-                             Iterate(v, other, problem.has_coulomb_friction()),
-                             settings,
-                             limits,
-                             {});
-    };
-    const SolverReport report = solve();
-    check_everywhere(report.converged, "  solved by contact nodes");
-    check_everywhere(report.certificate.largest() < 1e-8, "  and certified");
-    check_everywhere(std::abs(report.cycles.back().energy / report.energy - 1) <
-                       1e-10,
-                     "  cycles tell the energy of the body");
-
-    VectorType difference = u;
-    difference -= v;
-    const double distance = difference.linfty_norm() / u.linfty_norm();
-    check_everywhere(distance < 1e-8, "  the displacement is the same");
-    double largest = 0, worst = 0;
-    bool   same = true;
-    for (unsigned int p = 0; p < state.size(); ++p)
+    for (const std::string by : {"", "Newton's method", "Algorithm 2"})
       {
-        same = same && state.in_contact(p) == other.in_contact(p) &&
-          state.sticks(p) == other.sticks(p);
-        largest = std::max(largest, state.normal_force(p));
-        worst   = std::max(
-          worst, std::abs(state.normal_force(p) - other.normal_force(p)));
-      }
-    largest = Utilities::MPI::max(largest, MPI_COMM_WORLD);
-    check_everywhere(same, "  phases are");
-    check_everywhere(worst <= 1e-6 * largest, "  and normal forces");
+        CoulombSettings its_limits(limits);
+        if (by == "Algorithm 2")
+          {
+            its_limits.algorithm       = Algorithm::fixed_point;
+            its_limits.outer_tolerance = 1e-11;
+          }
+        const By method =
+          by == "Newton's method" ? By::newton_solver : By::coulomb_solver;
+        VectorType   v     = start;
+        ContactState other = start_state;
+        const auto   solve = [&]() {
+          return condensed.solve(
+            functional,
+            Iterate(v, other, problem.has_coulomb_friction()),
+            method,
+            its_limits,
+            {});
+        };
+        const SolverReport report = solve();
+        check_everywhere(report.converged,
+                         "  solved by contact nodes" +
+                           (by.empty() ? "" : ", by " + by));
+        check_everywhere(report.certificate.largest() < 1e-8,
+                         "  and certified");
+        check_everywhere(
+          std::abs(report.cycles.back().energy / report.energy - 1) < 1e-10,
+          "  cycles tell the energy of the body");
 
-    const VectorType before = v;
-    check_everywhere(solve().cycles.size() <= 2, "  nothing is left to do");
-    difference = v;
-    difference -= before;
-    check_everywhere(difference.linfty_norm() < 1e-8 * u.linfty_norm(),
-                     "  and nothing is done");
+        VectorType difference = u;
+        difference -= v;
+        const double distance = difference.linfty_norm() / u.linfty_norm();
+        check_everywhere(distance < 1e-8, "  the displacement is the same");
+        double largest = 0, worst = 0;
+        bool   same = true;
+        for (unsigned int p = 0; p < state.size(); ++p)
+          {
+            same = same && state.in_contact(p) == other.in_contact(p) &&
+              state.sticks(p) == other.sticks(p);
+            largest = std::max(largest, state.normal_force(p));
+            worst   = std::max(
+              worst, std::abs(state.normal_force(p) - other.normal_force(p)));
+          }
+        largest = Utilities::MPI::max(largest, MPI_COMM_WORLD);
+        check_everywhere(same, "  phases are");
+        check_everywhere(worst <= 1e-6 * largest, "  and normal forces");
+
+        const VectorType before = v;
+        check_everywhere(solve().cycles.size() <= 2, "  nothing is left to do");
+        difference = v;
+        difference -= before;
+        check_everywhere(difference.linfty_norm() < 1e-8 * u.linfty_norm(),
+                         "  and nothing is done");
+      }
   }
 
 

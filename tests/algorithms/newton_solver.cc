@@ -10,6 +10,7 @@
 #include <common/algorithms/nested_iteration.h>
 #include <common/algorithms/newton_solver.h>
 #include <common/input_error.h>
+#include <common/iteration/multigrid_newton_step.h>
 
 #include <tests/support/check.h>
 #include <tests/support/test.h>
@@ -65,9 +66,10 @@ namespace test_newton_solver
     const MonotoneSmoother<dim> smoother(problem);
     Levels<dim>                 levels(d.dof_handler(), problem);
     TruncatedCorrection<dim>    correction(levels, Cycle::V, 6);
-    NewtonSolver<dim>     solver(functional, smoother, levels, correction, 3);
-    const MultigridResult result = solver.solve(u, state, {});
-    SolverReport          report;
+    MultigridNewtonStep<dim>    step(problem, smoother, levels, correction, 3);
+    NewtonSolver<dim>           solver(functional, step);
+    const MultigridResult       result = solver.solve(u, state, {});
+    SolverReport                report;
     certify(report, functional, u, state);
 
     outcome.converged = outcome.converged && result.converged;

@@ -162,11 +162,14 @@ namespace test_safeguards
   // Much friction, for which the iteration goes to and fro. What one mesh has
   // needed the next one begins with.
   void
-  test_much_friction()
+  test_much_friction(const bool condensation)
   {
     std::cout << "Much friction" << std::endl;
-    NestedIteration<2> nest(read_parameters(
-      SCENES_DIR "/raous.prm", {"Contact/Friction coefficient=10"}));
+    NestedIteration<2> nest(
+      read_parameters(SCENES_DIR "/raous.prm",
+                      {"Contact/Friction coefficient=10",
+                       std::string("Solver/Condensation=") +
+                         (condensation ? "true" : "false")}));
     nest.begin();
     unsigned int failures = 0, solved = 0, most_cycles = 0, n_attempts = 0;
     std::string  last;
@@ -250,7 +253,8 @@ TEST(safeguards)
   test_mixing();
   test_long_cells(FrictionLaw::coulomb);
   test_long_cells(FrictionLaw::none);
-  test_much_friction();
+  test_much_friction(false);
+  test_much_friction(true);
   test_much_friction_and_little_volume();
   test_failure();
 }

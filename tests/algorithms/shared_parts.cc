@@ -117,7 +117,7 @@ namespace test_shared_parts
 
 TEST(shared_parts)
 {
-  test("The parts of the default", {});
+  test("The parts of the default", {"Solver/Condensation=false"});
   test("Others, which the safeguards exchange",
        {"Solver/Truncation=contact", "Solver/Coarse correction=monotone"});
 }
