@@ -84,7 +84,7 @@ def draw(table, output):
     print_by_size(seconds, dofs)
     figure, axes = plt.subplots(1, len(seconds), figsize=(7, 3.4), sharey=True,
                                 squeeze=False)
-    figure.subplots_adjust(left=0.075, right=0.985, bottom=0.28, wspace=0.06)
+    figure.subplots_adjust(left=0.075, right=0.985, bottom=0.28, wspace=0.12)
     for panel, (dim, problems) in zip(axes[0], sorted(seconds.items())):
         solvers = list(dict.fromkeys(name for of in problems.values()
                                      for name in of))
@@ -101,7 +101,7 @@ def draw(table, output):
         panel.set_title(f"{dim}D, {len(problems)} problems")
         panel.set_xlabel("time, in multiples of the fastest")
         grid(panel)
-    axes[0, 0].set_ylabel("share of problems solved")
+    axes[0, 0].set_ylabel("share solved")
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="lower center", ncol=5, fontsize=8)
     axes_below(figure, headline(figure, message(seconds),
