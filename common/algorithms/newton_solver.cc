@@ -123,14 +123,12 @@ namespace Friction
         equations.update(laws);
         linear_solver.update(equations);
         equations.eliminate_known(laws, residual, step, rhs);
-        const bool is_zero =
-          !(sum_over_processes(dot_owned(rhs, rhs), comm) > 0.);
         unsigned int most = limits.maximum_cycles -
           static_cast<unsigned int>(result.cycles.size());
         if (limits.budget)
           most = std::min(most, limits.budget->cycles_left());
         typename NewtonStep<dim>::Outcome linear;
-        if (!is_zero)
+        if (sum_over_processes(dot_owned(rhs, rhs), comm) > 0.)
           {
             linear = linear_solver.solve(unknown, rhs, forcing, most);
             add_owned(step, 1., unknown);

@@ -247,17 +247,46 @@ namespace Friction
 
   template <int dim>
   SolverReport
+  SafeguardedSolver<dim>::solve_condensed(const Search                &search,
+                                          const typename Condensed::By method,
+                                          const CoulombSettings       &limits)
+  {
+    return condensed->solve(
+      iteration.functional(),
+      Iterate(search.u, search.state, problem.has_coulomb_friction()),
+      method,
+      limits,
+      search.progress);
+  }
+
+
+
+  // None if the matrix could not be factorised, either.
+  template <int dim>
+  std::optional<SolverReport>
+  SafeguardedSolver<dim>::condensed_if_cheap(
+    const Search                &search,
+    const typename Condensed::By method,
+    const CoulombSettings       &limits)
+  {
+    if (!newton_is_for_contact_nodes_alone())
+      return {};
+    const SolverReport report = solve_condensed(search, method, limits);
+    if (!newton_is_for_contact_nodes_alone())
+      return {};
+    return report;
+  }
+
+
+
+  template <int dim>
+  SolverReport
   SafeguardedSolver<dim>::contact_nodes_alone(const Search &search)
   {
     CoulombSettings its_settings = later_settings(search.accuracy);
     if (much_friction())
       its_settings.limits.patience = short_patience;
-    return condensed->solve(
-      iteration.functional(),
-      Iterate(search.u, search.state, problem.has_coulomb_friction()),
-      CondensedSolver<dim>::By::coulomb_solver,
-      its_settings,
-      search.progress);
+    return solve_condensed(search, Condensed::By::coulomb_solver, its_settings);
   }
 
 
@@ -316,17 +345,9 @@ namespace Friction
     mixed.mixed_outer_iterations   = 10;
     mixed.maximum_outer_iterations =
       std::max(200u, settings.maximum_outer_iterations);
-    if (newton_is_for_contact_nodes_alone())
-      {
-        const SolverReport report =
-          condensed->solve(iteration.functional(),
-                           Iterate(search.u, search.state, true),
-                           CondensedSolver<dim>::By::coulomb_solver,
-                           mixed,
-                           search.progress);
-        if (newton_is_for_contact_nodes_alone())
-          return report;
-      }
+    if (const std::optional<SolverReport> report =
+          condensed_if_cheap(search, Condensed::By::coulomb_solver, mixed))
+      return *report;
     SolverReport report = CoulombSolver<dim>(iteration, mixed)
                             .solve(search.u, search.state, search.progress);
     if (report.inner_converged || budget->is_spent())
@@ -352,18 +373,9 @@ namespace Friction
   SafeguardedSolver<dim>::newton_method(const Search &search)
   {
     const CoulombSettings its_settings = later_settings(search.accuracy);
-    if (newton_is_for_contact_nodes_alone())
-      {
-        const SolverReport report = condensed->solve(
-          iteration.functional(),
-          Iterate(search.u, search.state, problem.has_coulomb_friction()),
-          CondensedSolver<dim>::By::newton_solver,
-          its_settings,
-          search.progress);
-        // Unless the matrix could not be factorised.
-        if (newton_is_for_contact_nodes_alone())
-          return report;
-      }
+    if (const std::optional<SolverReport> report = condensed_if_cheap(
+          search, Condensed::By::newton_solver, its_settings))
+      return *report;
 
     if (!newton)
       {

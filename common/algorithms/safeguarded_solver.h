@@ -160,6 +160,18 @@ namespace Friction
 
     bool contact_nodes_alone_are_better(const bool others_have_failed);
 
+    using Condensed = CondensedSolver<dim>;
+
+    SolverReport solve_condensed(const Search                &search,
+                                 const typename Condensed::By method,
+                                 const CoulombSettings       &limits);
+
+    // On contact nodes alone, if that is cheap.
+    std::optional<SolverReport>
+    condensed_if_cheap(const Search                &search,
+                       const typename Condensed::By method,
+                       const CoulombSettings       &limits);
+
     SolverReport contact_nodes_alone(const Search &search);
 
     bool contact_nodes_alone_take_less(const double n_cycles);
