@@ -19,7 +19,15 @@ namespace Friction
   MonotoneCorrection<dim>::MonotoneCorrection(
     Levels<dim> &levels, const Cycle cycle, const unsigned int smoothing_steps)
     : TruncatedCorrection<dim>(levels, cycle, smoothing_steps, false)
+  {}
+
+
+
+  template <int dim>
+  void
+  MonotoneCorrection<dim>::set_up()
   {
+    Base::set_up();
     for (unsigned int k = 0; k < levels.n_correction_levels(); ++k)
       {
         const auto &level = levels.hierarchy().level(k);

@@ -39,6 +39,8 @@ namespace Friction
     std::size_t memory_consumption() const override;
 
   protected:
+    void set_up() override;
+
     void prepare_visits(const unsigned int level) override;
 
     void relax(const unsigned int level,

@@ -22,11 +22,20 @@ namespace Friction
     const unsigned int smoothing_steps,
     const bool         by_lines)
     : levels(levels)
-    , relaxes_leaf(by_lines && levels.hierarchy().n_levels() > 1 &&
-                   levels.share_in_lines(levels.n_correction_levels()) > 0)
+    , by_lines(by_lines)
+    , cycle(cycle)
     , smoothing_steps(smoothing_steps)
+  {}
+
+
+
+  template <int dim>
+  void
+  TruncatedCorrection<dim>::set_up()
   {
     const unsigned int n = levels.n_correction_levels();
+    relaxes_leaf         = by_lines && levels.hierarchy().n_levels() > 1 &&
+      levels.share_in_lines(n) > 0;
     // The coarsest level is solved, so that once is enough.
     n_visits.assign(n, 1);
     unsigned int n_doubled = 0;
@@ -68,6 +77,8 @@ namespace Friction
   {
     const PhaseScope phase(levels.communicator(), SolverPhase::transfer);
     const LevelTransfer<dim> &transfer = levels.transfer();
+    if (rhs.empty())
+      set_up();
 
     // If there is but one level, there is no cycle, but a direct solve.
     const unsigned int finest      = levels.hierarchy().n_levels() - 1;

@@ -67,12 +67,15 @@ namespace Friction
     // accumulate over its visits to a level.
     std::vector<VectorType> rhs, correction, start, defect, work;
 
-    // What a cycle with bounds does in another way: to get ready for the
-    // visits to a level that has got its right hand side, to relax it, and to
-    // solve on the coarsest level.
+    // What a cycle with bounds does in another way: to set up, to get ready for
+    // the visits to a level that has got its right hand side, to relax it, and
+    // to solve on the coarsest level.
     virtual void
     prepare_visits(const unsigned int /*level*/)
     {}
+
+    // Makes the vectors of the levels, in the first cycle.
+    virtual void set_up();
 
     virtual void relax(const unsigned int level,
                        const bool         backwards,
@@ -89,7 +92,9 @@ namespace Friction
     std::vector<unsigned int> n_visits;
     std::vector<char>         is_untouched;
 
-    const bool relaxes_leaf;
+    const bool  by_lines;
+    const Cycle cycle;
+    bool        relaxes_leaf = false;
 
     void visit(const unsigned int level);
 

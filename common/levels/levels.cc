@@ -24,27 +24,40 @@ namespace Friction
   Levels<dim>::Levels(const DoFHandler<dim>      &dof_handler,
                       const DiscreteProblem<dim> &problem,
                       const CoarsestMethod        coarsest_method)
-    : Levels(RunScope(problem.communicator(), RunPart::levels),
-             dof_handler,
-             problem,
-             coarsest_method)
+    : leaf_and_levels(dof_handler)
+    , problem(problem)
+    , coarsest_method(coarsest_method)
   {}
 
 
 
   template <int dim>
-  Levels<dim>::Levels(const RunScope &,
-                      const DoFHandler<dim>      &dof_handler,
-                      const DiscreteProblem<dim> &problem,
-                      const CoarsestMethod        coarsest_method)
-    : leaf_and_levels(dof_handler)
-    , problem(problem)
-    , level_hierarchy(
-        dof_handler, problem.constraints, problem.stiffness.blocks())
-    , level_transfer(dof_handler, level_hierarchy, problem.constraints)
-    , level_matrices(
-        problem.stiffness.blocks(), level_hierarchy, problem.constraints)
-    , coarsest(level_hierarchy, level_matrices, coarsest_method)
+  Levels<dim>::~Levels() = default;
+
+
+
+  template <int dim>
+  void
+  Levels<dim>::make_now() const
+  {
+    if (!made)
+      made = std::make_unique<Parts>(RunScope(communicator(), RunPart::levels),
+                                     leaf_and_levels,
+                                     problem,
+                                     coarsest_method);
+  }
+
+
+
+  template <int dim>
+  Levels<dim>::Parts::Parts(const RunScope &,
+                            const DoFHandler<dim>      &dof_handler,
+                            const DiscreteProblem<dim> &problem,
+                            const CoarsestMethod        coarsest_method)
+    : hierarchy(dof_handler, problem.constraints, problem.stiffness.blocks())
+    , transfer(dof_handler, hierarchy, problem.constraints)
+    , matrices(problem.stiffness.blocks(), hierarchy, problem.constraints)
+    , coarsest(hierarchy, matrices, coarsest_method)
     , leaf_lines(
         problem.stiffness.blocks(),
         movable_nodes(problem.constraints),
@@ -52,21 +65,21 @@ namespace Friction
           return problem.constraints.is_prescribed(node, c);
         },
         problem.communicator())
-    , factorised(level_matrices.n_levels() + 1, 0)
+    , factorised(matrices.n_levels() + 1, 0)
   {
-    for (unsigned int k = 0; k < n_correction_levels(); ++k)
+    for (unsigned int k = 0; k < matrices.n_levels(); ++k)
       {
-        const auto &level = level_hierarchy.level(k);
+        const auto &level = hierarchy.level(k);
         lines.emplace_back(
-          level_matrices.matrix(k),
+          matrices.matrix(k),
           level.relaxed_nodes(),
           [&level](const unsigned int node, const unsigned int c) {
             return level.is_prescribed(node, c);
           },
           problem.communicator());
         relaxations.emplace_back(
-          level_matrices.matrix(k),
-          level_matrices.inverse_diagonals(k),
+          matrices.matrix(k),
+          matrices.inverse_diagonals(k),
           lines.back().other_nodes(level.relaxed_nodes()));
         coupled.emplace_back(level.numbering(), level.coupled_ghosts());
       }
@@ -78,11 +91,12 @@ namespace Friction
   void
   Levels<dim>::update(const Truncation<dim> &truncation)
   {
+    Parts           &its = parts();
     const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
-    const std::size_t n_rows = level_matrices.update(truncation);
+    const std::size_t n_rows = its.matrices.update(truncation);
     // Rows of other processes have no part in the lines of this one.
     if (n_rows > 0)
-      ++version;
+      ++its.version;
     updated_rows += n_rows;
   }
 
@@ -90,7 +104,7 @@ namespace Friction
 
   template <int dim>
   bool
-  Levels<dim>::needs_factorisation(const unsigned int k)
+  Levels<dim>::Parts::needs_factorisation(const unsigned int k)
   {
     return std::exchange(factorised[k], version) != version;
   }
@@ -106,17 +120,20 @@ namespace Friction
                      VectorType        *defect)
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::coarse_sweeps);
-    double *const    result    = defect != nullptr ? defect->begin() : nullptr;
-    const bool       has_lines = lines[k].has_lines();
-    if (has_lines && needs_factorisation(k))
-      lines[k].factorise();
+    double *const    result     = defect != nullptr ? defect->begin() : nullptr;
+    Parts           &its        = parts();
+    LineRelaxation<dim> &lines  = its.lines[k];
+    GhostExchange       &ghosts = its.coupled[k];
+    const bool           has_lines = lines.has_lines();
+    if (has_lines && its.needs_factorisation(k))
+      lines.factorise();
     if (has_lines && sweeps.backwards)
-      lines[k].run(sweeps, b.begin(), c.begin(), coupled[k]);
+      lines.run(sweeps, b.begin(), c.begin(), ghosts);
     const bool is_last = !has_lines || sweeps.backwards;
-    relaxations[k].run(
-      sweeps, b.begin(), c.begin(), coupled[k], is_last ? result : nullptr);
+    its.relaxations[k].run(
+      sweeps, b.begin(), c.begin(), ghosts, is_last ? result : nullptr);
     if (!is_last)
-      lines[k].run(sweeps, b.begin(), c.begin(), coupled[k], result);
+      lines.run(sweeps, b.begin(), c.begin(), ghosts, result);
   }
 
 
@@ -129,17 +146,19 @@ namespace Friction
                           VectorType       *defect)
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::coarse_sweeps);
-    if (needs_factorisation(n_correction_levels()))
-      leaf_lines.factorise(&level_matrices.current_truncation());
+    Parts           &its              = parts();
+    const Truncation<dim> &truncation = its.matrices.current_truncation();
+    if (its.needs_factorisation(n_correction_levels()))
+      its.leaf_lines.factorise(&truncation);
     problem.stiffness.update_ghosts(v);
-    leaf_lines.run(sweeps,
-                   r.begin(),
-                   v.begin(),
-                   problem.stiffness.ghosts(),
-                   defect != nullptr ? defect->begin() : nullptr);
+    its.leaf_lines.run(sweeps,
+                       r.begin(),
+                       v.begin(),
+                       problem.stiffness.ghosts(),
+                       defect != nullptr ? defect->begin() : nullptr);
     // The problem of a long line is so badly conditioned that its rounding
     // would leave what is truncated.
-    level_matrices.current_truncation().apply(v.begin());
+    truncation.apply(v.begin());
   }
 
 
@@ -148,10 +167,13 @@ namespace Friction
   std::size_t
   Levels<dim>::memory_consumption() const
   {
-    std::size_t bytes = level_hierarchy.memory_consumption() +
-      level_matrices.memory_consumption() +
-      level_transfer.memory_consumption() + leaf_lines.memory_consumption();
-    for (const LineRelaxation<dim> &of_level : lines)
+    if (!made)
+      return 0;
+    std::size_t bytes = made->hierarchy.memory_consumption() +
+      made->matrices.memory_consumption() +
+      made->transfer.memory_consumption() +
+      made->leaf_lines.memory_consumption();
+    for (const LineRelaxation<dim> &of_level : made->lines)
       bytes += of_level.memory_consumption();
     return bytes;
   }

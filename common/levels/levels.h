@@ -11,6 +11,7 @@
 #include <common/parallel/ghost_exchange.h>
 #include <common/parallel/run_clock.h>
 
+#include <memory>
 #include <vector>
 
 namespace Friction
@@ -28,13 +29,16 @@ namespace Friction
    *
    * A correction adds vectors to this, and the order in which levels are
    * visited.
+   *
+   * They are made by make_now(), or when they are needed first: a small problem
+   * may be solved without them, see SafeguardedSolver. Each function may be the
+   * first one, and is collective then.
    */
   template <int dim>
   class Levels
   {
   public:
     /**
-     * Collective.
      * @param dof_handler  with leaf and level degrees of freedom; kept by
      *                     reference.
      * @param problem      on its leaf mesh; kept by reference, as is what it
@@ -47,6 +51,11 @@ namespace Friction
            DiscreteProblem<dim> &&,
            const CoarsestMethod = {}) = delete;
 
+    ~Levels();
+
+    /** Makes them, unless they are there. Collective. */
+    void make_now() const;
+
     const DoFHandler<dim> &
     dof_handler() const
     {
@@ -56,25 +65,25 @@ namespace Friction
     const LevelHierarchy<dim> &
     hierarchy() const
     {
-      return level_hierarchy;
+      return parts().hierarchy;
     }
 
     const LevelTransfer<dim> &
     transfer() const
     {
-      return level_transfer;
+      return parts().transfer;
     }
 
     const LevelMatrices<dim> &
     matrices() const
     {
-      return level_matrices;
+      return parts().matrices;
     }
 
     CoarsestSolver<dim> &
     coarsest_solver()
     {
-      return coarsest;
+      return parts().coarsest;
     }
 
     MPI_Comm
@@ -87,21 +96,21 @@ namespace Friction
     unsigned int
     n_correction_levels() const
     {
-      return level_matrices.n_levels();
+      return parts().matrices.n_levels();
     }
 
     /** A vector of zeros for level @p k, with the ghosts of Level. */
     VectorType
     vector(const unsigned int k) const
     {
-      return VectorType(level_hierarchy.level(k).partitioner());
+      return VectorType(parts().hierarchy.level(k).partitioner());
     }
 
     /** The values that owned rows of level @p k couple to. */
     GhostExchange &
     coupled_ghosts(const unsigned int k)
     {
-      return coupled[k];
+      return parts().coupled[k];
     }
 
     /** Has the matrices follow a change of phases; see
@@ -137,8 +146,8 @@ namespace Friction
     double
     share_in_lines(const unsigned int k) const
     {
-      return k < n_correction_levels() ? lines[k].share_of_nodes()
-                                       : leaf_lines.share_of_nodes();
+      return k < n_correction_levels() ? parts().lines[k].share_of_nodes()
+                                       : parts().leaf_lines.share_of_nodes();
     }
 
     /** The number of unknowns of a correction level, or likewise of the leaf
@@ -147,7 +156,7 @@ namespace Friction
     n_dofs(const unsigned int k) const
     {
       return k < n_correction_levels()
-        ? level_hierarchy.level(k).partitioner()->size()
+        ? parts().hierarchy.level(k).partitioner()->size()
         : problem.constraints.partitioner()->size();
     }
 
@@ -165,32 +174,47 @@ namespace Friction
     std::size_t memory_consumption() const;
 
   private:
-    // The first argument counts the time.
-    Levels(const RunScope &,
-           const DoFHandler<dim>      &dof_handler,
-           const DiscreteProblem<dim> &problem,
-           const CoarsestMethod        coarsest_method);
+    // What there is once they have been made.
+    struct Parts
+    {
+      // The first argument counts the time.
+      Parts(const RunScope &,
+            const DoFHandler<dim>      &dof_handler,
+            const DiscreteProblem<dim> &problem,
+            const CoarsestMethod        coarsest_method);
 
-    const DoFHandler<dim>        &leaf_and_levels;
-    const DiscreteProblem<dim>   &problem;
-    const LevelHierarchy<dim>     level_hierarchy;
-    const LevelTransfer<dim>      level_transfer;
-    LevelMatrices<dim>            level_matrices;
-    CoarsestSolver<dim>           coarsest;
-    std::vector<GaussSeidel<dim>> relaxations;
+      const LevelHierarchy<dim>     hierarchy;
+      const LevelTransfer<dim>      transfer;
+      LevelMatrices<dim>            matrices;
+      CoarsestSolver<dim>           coarsest;
+      std::vector<GaussSeidel<dim>> relaxations;
 
-    // Where cells are stretched: the lines of the levels and of the leaf mesh.
-    // They are factorised when they are needed, and then kept until rows of the
-    // level matrices change.
-    std::vector<LineRelaxation<dim>> lines;
-    LineRelaxation<dim>              leaf_lines;
-    unsigned int                     version      = 1; // of the matrices
-    std::size_t                      updated_rows = 0;
-    std::vector<unsigned int>        factorised; // which; none if zero
+      // Where cells are stretched: the lines of the levels and of the leaf
+      // mesh. They are factorised when they are needed, and then kept until
+      // rows of the level matrices change.
+      std::vector<LineRelaxation<dim>> lines;
+      LineRelaxation<dim>              leaf_lines;
+      unsigned int                     version = 1; // of the matrices
+      std::vector<unsigned int>        factorised;  // which; none if zero
 
-    bool needs_factorisation(const unsigned int k);
+      bool needs_factorisation(const unsigned int k);
 
-    std::vector<GhostExchange> coupled;
+      std::vector<GhostExchange> coupled;
+    };
+
+    const DoFHandler<dim>         &leaf_and_levels;
+    const DiscreteProblem<dim>    &problem;
+    const CoarsestMethod           coarsest_method;
+    mutable std::unique_ptr<Parts> made;
+    std::size_t                    updated_rows = 0;
+
+    Parts &
+    parts() const
+    {
+      if (!made)
+        make_now();
+      return *made;
+    }
   };
 } // namespace Friction
 
