@@ -75,11 +75,12 @@ namespace Friction
     }
 
     /**
-     * A part in 1e8 of the force that the displacement of a node would cause if
-     * all others stayed where they are; in a later load step the largest one
-     * of the step before, if that is larger. Of what is left where a body
-     * merely moves, or where all loads have been taken away, nothing but
-     * rounding errors, this is still a large multiple.
+     * A part in 1e8, or two in three dimensions, of the force that the
+     * displacement of a node would cause if all others stayed where they are;
+     * in a later load step the largest one of the step before, if that is
+     * larger. Of what is left where a body merely moves, or where all loads
+     * have been taken away, nothing but rounding errors, this is still a large
+     * multiple.
      */
     double force_of_rounding(const unsigned int node) const;
 
