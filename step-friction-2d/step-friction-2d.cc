@@ -368,9 +368,14 @@ namespace StepFriction2d
     // can bring about, <code>SafeguardedSolver</code> exchanges parts 3 to
     // 5, and then Algorithm 3 for others; levels and their matrices stay. What
     // it had to do, the console says; in most scenes it is nothing. What one
-    // mesh needed, the next one begins with.
+    // mesh needed, the next one begins with. Meshes of a few hundred unknowns
+    // it solves without levels, by factors of all nodes but those near the
+    // contact zone, unless the scene says <code>Condensation = where cycles are
+    // many</code>; for the others <code>prepare()</code> makes the levels now,
+    // so that they count as set-up.
     SafeguardedSolver<dim> solver(
       problem, levels, iteration, settings, report.next_method);
+    solver.prepare(displacement, state);
     setup_seconds = discretization.setup_seconds() + timer.wall_time();
 
     // A scene may give the total force on a part of the boundary instead of its

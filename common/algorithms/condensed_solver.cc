@@ -9,17 +9,20 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 namespace Friction
 {
   namespace
   {
-    // Multiplications per unknown that take about as long as a multigrid cycle
-    // of an easy material; and unknowns up to which it is worth while to count
-    // them.
+    // Multiplications that take about as long as a multigrid cycle of an easy
+    // material: so many per unknown, and as many as it takes to go through the
+    // levels, however small they are. And unknowns up to which it is worth
+    // while to count them.
     template <int dim>
-    constexpr double per_cycle = (dim == 2 ? 250. : 2500.);
+    constexpr double per_unknown = (dim == 2 ? 250. : 2500.);
+
+    template <int dim>
+    constexpr double at_least = (dim == 2 ? 1.5e5 : 3e5);
 
     template <int dim>
     constexpr types::global_dof_index largest = (dim == 2 ? 60000 : 20000);
@@ -132,7 +135,8 @@ namespace Friction
   CondensedSolver<dim>::CondensedSolver(
     const DiscreteProblem<dim>    &problem,
     const std::vector<Point<dim>> &own_positions,
-    const SolverSettings          &settings)
+    const SolverSettings          &settings,
+    const Iterate                 &guess)
     : problem(problem)
     , settings(settings)
     , matrix(&problem.stiffness.blocks())
@@ -149,11 +153,12 @@ namespace Friction
                       std::all_of(is_held.begin() + dim * i,
                                   is_held.begin() + dim * (i + 1),
                                   [](const char held) { return held; }));
-    tree = std::make_unique<EliminationTree>(
-      matrix->sparsity(), positions, is_contact, is_absent);
-    if (!is_worthwhile(most_cycles))
+    zone = std::make_unique<ContactZone<dim>>(problem, matrix->sparsity());
+    zone->grow(guess.u, guess.state);
+    keep_zone();
+    if (!tree)
       {
-        tree.reset();
+        zone.reset();
         gathered = NodeBlockMatrix<dim>();
       }
   }
@@ -174,7 +179,7 @@ namespace Friction
     const NodalConstraints<dim>       &constraints = problem.constraints;
     const unsigned int                 n = constraints.n_owned_nodes();
     std::vector<std::array<double, 3>> places(n);
-    std::vector<char>                  held(dim * n), contact(n, 0);
+    std::vector<char>                  held(dim * n);
     for (unsigned int i = 0; i < n; ++i)
       {
         places[i].fill(0.);
@@ -184,15 +189,8 @@ namespace Friction
             held[dim * i + d] = constraints.is_prescribed(i, d);
           }
       }
-    for (const ContactNode<dim> &p : problem.contact)
-      contact[p.node] = 1;
-    positions  = gather_from_all(places, comm);
-    is_held    = gather_from_all(held, comm);
-    is_contact = gather_from_all(contact, comm);
-
-    number.resize(positions.size());
-    for (unsigned int i = 0, k = 0; i < number.size(); ++i)
-      number[i] = is_contact[i] ? k++ : 0;
+    positions = gather_from_all(places, comm);
+    is_held   = gather_from_all(held, comm);
   }
 
 
@@ -240,6 +238,75 @@ namespace Friction
 
 
 
+  // No tree is left if that is not worth while.
+  template <int dim>
+  void
+  CondensedSolver<dim>::keep_zone()
+  {
+    condensation.reset();
+    number.resize(positions.size());
+    for (unsigned int i = 0, k = 0; i < number.size(); ++i)
+      number[i] = zone->nodes()[i] ? k++ : 0;
+    tree = std::make_unique<EliminationTree>(
+      matrix->sparsity(), positions, zone->nodes(), is_absent);
+    if (!is_worthwhile(most_cycles))
+      tree.reset();
+  }
+
+
+
+  // Returns whether the problem that is left is there to be solved.
+  template <int dim>
+  bool
+  CondensedSolver<dim>::keep_what_touches(const Iterate &x)
+  {
+    const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
+    if (zone->grow(x.u, x.state))
+      {
+        move_out_of_obstacle(x.u);
+        keep_zone();
+      }
+    return is_worthwhile(limit) && factorize();
+  }
+
+
+
+  // Nodes outside the zone may be what holds the body.
+  template <int dim>
+  bool
+  CondensedSolver<dim>::factorize()
+  {
+    while (tree && !condensation && !has_failed)
+      {
+        condensation =
+          std::make_unique<Condensation<dim>>(*matrix, *tree, is_held);
+        if (true_on_any_process(!condensation->factorize(),
+                                problem.communicator()))
+          {
+            has_failed = !zone->grow_to_all();
+            keep_zone();
+          }
+      }
+    return tree && !has_failed;
+  }
+
+
+
+  template <int dim>
+  void
+  CondensedSolver<dim>::move_out_of_obstacle(VectorType &u) const
+  {
+    for (const ContactNode<dim> &p : problem.contact)
+      {
+        const double depth = normal_component(p, u) - p.gap;
+        if (depth > 0.)
+          for (unsigned int d = 0; d < dim; ++d)
+            u.local_element(dim * p.node + d) -= depth * p.normal()[d];
+      }
+  }
+
+
+
   template <int dim>
   bool
   CondensedSolver<dim>::is_worthwhile(const double n_cycles) const
@@ -252,7 +319,7 @@ namespace Friction
     const double cycles = 3 * n * n * (10 + n / 6);
     return n > 0 &&
       tree->cost(dim) + cycles <=
-      n_cycles * per_cycle<dim> * dim * matrix->n_rows();
+      n_cycles * (at_least<dim> + per_unknown<dim> * dim * matrix->n_rows());
   }
 
 
@@ -266,16 +333,17 @@ namespace Friction
     const std::vector<unsigned int> &kept = tree->fronts().back().nodes;
     const NodeNumbering &numbering        = problem.constraints.numbering();
 
-    std::vector<ContactNode<dim>> nodes(problem.contact.begin(),
-                                        problem.contact.end());
+    std::vector<ContactNode<dim>> nodes;
     std::vector<double>           own_values, own_measures;
-    for (ContactNode<dim> &p : nodes)
-      {
-        for (unsigned int d = 0; d < dim; ++d)
-          own_values.push_back(u.local_element(dim * p.node + d));
-        own_measures.push_back(problem.face_measures[p.node]);
-        p.node = number[numbering.global(p.node)];
-      }
+    for (const ContactNode<dim> &p : problem.contact)
+      if (zone->contains(p))
+        {
+          for (unsigned int d = 0; d < dim; ++d)
+            own_values.push_back(u.local_element(dim * p.node + d));
+          own_measures.push_back(problem.face_measures[p.node]);
+          nodes.push_back(p);
+          nodes.back().node = number[numbering.global(p.node)];
+        }
     nodes                              = gather_from_all(nodes, comm);
     const std::vector<double> at_nodes = gather_from_all(own_values, comm),
                               measures = gather_from_all(own_measures, comm);
@@ -325,41 +393,58 @@ namespace Friction
   {
     Assert(is_worthwhile(most_cycles),
            ExcMessage("Ask is_worthwhile() first."));
-    const MPI_Comm   comm   = problem.communicator();
-    const PhaseCosts before = phase_costs(comm);
-    SolverReport     report;
-    if (!condensation)
+    const MPI_Comm         comm        = problem.communicator();
+    const PhaseCosts       before      = phase_costs(comm);
+    const VectorType       start       = x.u;
+    const ContactState     start_state = x.state;
+    std::vector<CycleInfo> cycles;
+    SolverReport           report;
+    bool                   is_too_small = false;
+    do
       {
-        const PhaseScope phase(comm, SolverPhase::matrix_updates);
-        condensation =
-          std::make_unique<Condensation<dim>>(*matrix, *tree, is_held);
-        has_failed = true_on_any_process(!condensation->factorize(), comm);
-      }
-    if (has_failed)
-      {
-        certify(report, functional, x.u, x.state);
-        return report;
-      }
+        if (!keep_what_touches(x))
+          {
+            report = SolverReport();
+            break;
+          }
+        // A body that the zone did not hold has run away.
+        if (!cycles.empty())
+          {
+            x.u     = start;
+            x.state = start_state;
+          }
+        report = solve_in_zone(functional, x, method, limits, progress);
+        cycles.insert(cycles.end(), report.cycles.begin(), report.cycles.end());
+    } while ((is_too_small = zone->misses(x.u, x.state)) &&
+             !(limits.limits.budget && limits.limits.budget->is_spent()));
+    report.converged = report.converged && !is_too_small;
 
-    // What each of them starts with, and the state of all contact nodes.
+    if (!report.converged)
+      {
+        move_out_of_obstacle(x.u);
+        certify(report, functional, x.u, x.state);
+      }
+    report.cycles        = cycles;
+    report.costs         = phase_costs(comm) - before;
+    report.matrix_memory = problem.stiffness.memory_consumption();
+    return report;
+  }
+
+
+
+  template <int dim>
+  SolverReport
+  CondensedSolver<dim>::solve_in_zone(const TrescaFunctional<dim> &functional,
+                                      Iterate                     &x,
+                                      const By                     method,
+                                      const CoulombSettings       &limits,
+                                      const Progress              &progress)
+  {
+    const MPI_Comm                   comm  = problem.communicator();
     const std::unique_ptr<Small>     small = make_small_problem(x.u);
     const std::vector<unsigned int> &kept  = tree->fronts().back().nodes;
-    std::vector<char>                flags;
-    std::vector<double>              normal_forces;
-    for (unsigned int p = 0; p < x.state.size(); ++p)
-      {
-        flags.push_back(x.state.in_contact(p) + 2 * x.state.sticks(p));
-        normal_forces.push_back(x.state.normal_force(p));
-      }
-    flags         = gather_from_all(flags, comm);
-    normal_forces = gather_from_all(normal_forces, comm);
-    ContactState state(small->contact.size(), x.state.has_friction());
-    for (unsigned int p = 0; p < state.size(); ++p)
-      {
-        state.set(p, flags[p] & 1, flags[p] & 2);
-        state.set_normal_force(p, normal_forces[p]);
-      }
-    const unsigned int first_own = first_of_own_contact_nodes();
+    ContactState                     state = gather_state(x.state);
+    SolverReport                     report;
 
     const bool      is_first = Utilities::MPI::this_mpi_process(comm) == 0;
     const auto      solver   = is_first
@@ -406,17 +491,11 @@ namespace Friction
             values[dim * kept[k] + d] = small->u.local_element(dim * k + d) -
               start.local_element(dim * k + d);
         condensation->expand(values);
-        const unsigned int first =
-          dim * problem.constraints.numbering().distribution().global(0);
+        const unsigned int first = dim * first_own_node();
         for (unsigned int i = 0; i < x.u.locally_owned_size(); ++i)
           if (!is_absent[(first + i) / dim] && !is_held[first + i])
             x.u.local_element(i) += values[first + i];
-        for (unsigned int p = 0; p < x.state.size(); ++p)
-          {
-            const unsigned int q = first_own + p;
-            x.state.set(p, state.in_contact(q), state.sticks(q));
-            x.state.set_normal_force(p, state.normal_force(q));
-          }
+        scatter_state(state, x.state);
 
         // The energy of the whole body is another one by that of what has been
         // eliminated.
@@ -426,6 +505,9 @@ namespace Friction
           cycle.energy += report.energy - energy_on_contact_nodes;
         report.cycles.insert(
           report.cycles.begin(), earlier.begin(), earlier.end());
+        // What is in the obstacle outside the zone is no matter of passes.
+        if (report.converged && zone->misses(x.u, x.state))
+          return report;
         // What a later pass did not get to is there already.
         has_converged = (report.converged || has_converged) &&
           report.certificate.largest() <= limits.certificate_tolerance;
@@ -435,12 +517,65 @@ namespace Friction
           break;
       }
     report.converged     = has_converged;
-    report.costs         = phase_costs(comm) - before;
-    report.matrix_memory = problem.stiffness.memory_consumption();
     report.solver_memory = memory_consumption() +
       small->stiffness.memory_consumption() +
       (solver ? solver->memory_consumption() : 0);
     return report;
+  }
+
+
+
+  // Of the nodes in the zone, of all processes.
+  template <int dim>
+  ContactState
+  CondensedSolver<dim>::gather_state(const ContactState &own) const
+  {
+    std::vector<char>   flags;
+    std::vector<double> normal_forces;
+    for (unsigned int p = 0; p < own.size(); ++p)
+      if (zone->contains(problem.contact[p]))
+        {
+          flags.push_back(own.in_contact(p) + 2 * own.sticks(p));
+          normal_forces.push_back(own.normal_force(p));
+        }
+    flags         = gather_from_all(flags, problem.communicator());
+    normal_forces = gather_from_all(normal_forces, problem.communicator());
+    ContactState result(flags.size(), own.has_friction());
+    for (unsigned int p = 0; p < result.size(); ++p)
+      {
+        result.set(p, flags[p] & 1, flags[p] & 2);
+        result.set_normal_force(p, normal_forces[p]);
+      }
+    return result;
+  }
+
+
+
+  // All others are free. Kept nodes are numbered process by process.
+  template <int dim>
+  void
+  CondensedSolver<dim>::scatter_state(const ContactState &of_zone,
+                                      ContactState       &own) const
+  {
+    const auto   begin = zone->nodes().begin();
+    unsigned int q     = std::count(begin, begin + first_own_node(), 1);
+    for (unsigned int p = 0; p < own.size(); ++p)
+      {
+        const bool is_kept = zone->contains(problem.contact[p]);
+        own.set(
+          p, is_kept && of_zone.in_contact(q), is_kept && of_zone.sticks(q));
+        own.set_normal_force(p, is_kept ? of_zone.normal_force(q) : 0.);
+        q += is_kept;
+      }
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  CondensedSolver<dim>::first_own_node() const
+  {
+    return problem.constraints.numbering().distribution().global(0);
   }
 
 
@@ -498,23 +633,6 @@ namespace Friction
         state.set(p, next[0] != 0., next[1] != 0.);
         state.set_normal_force(p, next[2]);
       }
-  }
-
-
-
-  template <int dim>
-  unsigned int
-  CondensedSolver<dim>::first_of_own_contact_nodes() const
-  {
-    const MPI_Comm comm = problem.communicator();
-    if (is_alone(comm))
-      return 0;
-    const auto sizes = Utilities::MPI::all_gather(
-      comm, static_cast<unsigned int>(problem.contact.size()));
-    return std::accumulate(sizes.begin(),
-                           sizes.begin() +
-                             Utilities::MPI::this_mpi_process(comm),
-                           0u);
   }
 
 

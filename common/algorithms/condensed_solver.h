@@ -1,6 +1,7 @@
 #ifndef friction_algorithms_condensed_solver_h
 #define friction_algorithms_condensed_solver_h
 
+#include <common/algorithms/contact_zone.h>
 #include <common/algorithms/coulomb_solver.h>
 #include <common/discretization/discrete_problem.h>
 #include <common/nodes/condensation.h>
@@ -19,12 +20,16 @@ namespace Friction
    * are condensed, see Condensation, and what remains is the same problem with
    * a dense matrix, for which CoulombSolver needs no levels. Coarse functions
    * have no part in it, so that no material and no shape of cells can make them
-   * fail. The matrix is factorised once, whatever the phases turn out to be,
-   * where Newton's method with a direct solver does so for each set of phases.
+   * fail. The matrix is factorised whatever the phases turn out to be, where
+   * Newton's method with a direct solver does so for each set of phases.
    *
    * That is the right thing to do as long as it is cheap: the work grows with
    * the power 3/2 of the number of unknowns in two dimensions, and with its
    * square in three.
+   *
+   * Of the contact nodes only those are kept that are in the ContactZone of the
+   * guess. If the solution takes others into the obstacle, the zone grows, and
+   * the matrix is factorised once more.
    *
    * Where the laws themselves are the trouble, Newton's method solves the same
    * small problem, see NewtonSolver and DenseNewtonStep.
@@ -44,17 +49,29 @@ namespace Friction
      * @param problem    kept by reference.
      * @param positions  of the nodes that this process owns.
      * @param settings   sweeps and local solver.
+     * @param guess      that solve() is likely to begin with: its zone is what
+     *                   is kept at first.
      */
     CondensedSolver(const DiscreteProblem<dim>    &problem,
                     const std::vector<Point<dim>> &positions,
-                    const SolverSettings          &settings);
+                    const SolverSettings          &settings,
+                    const Iterate                 &guess);
 
     ~CondensedSolver();
 
-    /** Whether it takes no longer than so many multigrid cycles, of a material
-     * that is neither stiff in parts nor nearly incompressible; never if it
-     * takes more than most_cycles. The same on all processes. */
+    /** Whether, with the zone of the moment, it takes no longer than so many
+     * multigrid cycles, of a material that is neither stiff in parts nor nearly
+     * incompressible; never if it takes more than most_cycles. The same on all
+     * processes. */
     bool is_worthwhile(const double n_cycles) const;
+
+    /** Has solve() end without a solution if the zone grows so that it takes
+     * longer than so many cycles; at first most_cycles. */
+    void
+    give_up_beyond(const double n_cycles)
+    {
+      limit = n_cycles;
+    }
 
     /// What solves the condensed problem.
     enum class By
@@ -88,18 +105,33 @@ namespace Friction
     const NodeBlockMatrix<dim> *matrix;
 
     // Of all nodes: those that take no part hang or are held altogether.
-    // Contact nodes have a number among those.
     std::vector<std::array<double, 3>> positions;
-    std::vector<char>                  is_held, is_absent, is_contact;
-    std::vector<unsigned int>          number;
+    std::vector<char>                  is_held, is_absent;
 
+    // Nodes in the zone are kept, and have a number among those.
+    std::unique_ptr<ContactZone<dim>>  zone;
+    std::vector<unsigned int>          number;
     std::unique_ptr<EliminationTree>   tree;
     std::unique_ptr<Condensation<dim>> condensation;
     bool                               has_failed = false;
+    double                             limit      = most_cycles;
 
     void gather_nodes(const std::vector<Point<dim>> &own_positions);
 
     void gather_matrix();
+
+    bool keep_what_touches(const Iterate &x);
+    void keep_zone();
+    bool factorize();
+
+    void move_out_of_obstacle(VectorType &u) const;
+
+    // What happens in the zone as it is.
+    SolverReport solve_in_zone(const TrescaFunctional<dim> &functional,
+                               Iterate                     &x,
+                               const By                     method,
+                               const CoulombSettings       &limits,
+                               const Progress              &progress);
 
     struct Small;
     std::unique_ptr<Small> make_small_problem(const VectorType &u) const;
@@ -107,9 +139,11 @@ namespace Friction
     // The first process has this for as long as it solves.
     struct SmallSolver;
 
-    void share(SolverReport &report, VectorType &u, ContactState &state) const;
+    unsigned int first_own_node() const;
+    ContactState gather_state(const ContactState &own) const;
+    void scatter_state(const ContactState &of_zone, ContactState &own) const;
 
-    unsigned int first_of_own_contact_nodes() const;
+    void share(SolverReport &report, VectorType &u, ContactState &state) const;
   };
 } // namespace Friction
 

@@ -75,6 +75,15 @@ namespace Friction
 
 
   template <int dim>
+  void
+  ContactSolver<dim>::prepare(VectorType &u, ContactState &state)
+  {
+    safeguarded.prepare(u, state);
+  }
+
+
+
+  template <int dim>
   SolverReport
   ContactSolver<dim>::solve(VectorType     &u,
                             ContactState   &state,

@@ -33,6 +33,9 @@ namespace Friction
 
     ContactSolver(const ContactSolver &) = delete;
 
+    /** See SafeguardedSolver::prepare(). Collective. */
+    void prepare(VectorType &u, ContactState &state);
+
     /** See SafeguardedSolver::solve(). Collective. */
     SolverReport solve(VectorType     &u,
                        ContactState   &state,

@@ -78,6 +78,7 @@ namespace Friction
     state = make_guess(solution);
     ContactSolver<dim> solver(
       the_discretization, settings, last_report.next_method);
+    solver.prepare(solution, state);
     solver_setup_seconds = timer.wall_time();
     timer.restart();
     const SolverReport report = force_control.solve(

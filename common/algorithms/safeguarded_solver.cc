@@ -36,8 +36,23 @@ namespace Friction
     // cheaper. Where others have failed, as many as are ever worth while.
     constexpr double cycles_to_expect = 24;
 
+    // And for any material, to a given tolerance; fewer in three dimensions,
+    // where CondensedSolver is generous with multiplications per cycle. And
+    // unknowns up to which that is possible.
+    template <int dim>
+    constexpr double quick_cycles = (dim == 2 ? 8 : 3);
+
+    template <int dim>
+    constexpr types::global_dof_index largest_quick = (dim == 2 ? 5000 : 8000);
+
     template <int dim>
     constexpr double cycles_to_the_end = (dim == 2 ? 72 : 36);
+
+
+
+    // How many times as long as has been expected it may take if more nodes
+    // turn out to touch.
+    constexpr double allowed_growth = 3;
 
 
 
@@ -202,17 +217,34 @@ namespace Friction
 
   template <int dim>
   bool
-  SafeguardedSolver<dim>::contact_nodes_alone_are_better(
-    const bool others_have_failed)
+  SafeguardedSolver<dim>::may_condense() const
   {
-    if (!settings.condensation || !has_defaults(settings))
+    return settings.condensation != CondensationUse::never &&
+      has_defaults(settings);
+  }
+
+
+
+  template <int dim>
+  bool
+  SafeguardedSolver<dim>::contact_nodes_alone_are_better(
+    const Search &search, const bool others_have_failed)
+  {
+    if (!may_condense())
       return false;
-    if (!(settings.nearly_incompressible || mostly_lines_in_space() ||
-          materials_do_jump() || (others_have_failed && !much_friction())))
+    if (settings.condensation == CondensationUse::where_quicker &&
+        settings.energy_tolerance == 0. &&
+        problem.constraints.partitioner()->size() <= largest_quick<dim> &&
+        contact_nodes_alone_take_less(search, quick_cycles<dim>))
+      return true;
+    if (!(settings.nearly_incompressible ||
+          (others_have_failed && !much_friction()) || materials_do_jump() ||
+          mostly_lines_in_space()))
       return false;
     const bool are_dearer =
       settings.nearly_incompressible && settings.energy_tolerance == 0.;
-    return contact_nodes_alone_take_less(others_have_failed
+    return contact_nodes_alone_take_less(search,
+                                         others_have_failed
                                            ? CondensedSolver<dim>::most_cycles
                                            : are_dearer ? cycles_to_the_end<dim>
                                                         : cycles_to_expect);
@@ -222,14 +254,19 @@ namespace Friction
 
   template <int dim>
   bool
-  SafeguardedSolver<dim>::contact_nodes_alone_take_less(const double n_cycles)
+  SafeguardedSolver<dim>::contact_nodes_alone_take_less(const Search &search,
+                                                        const double  n_cycles)
   {
     if (!condensed)
       condensed = std::make_unique<CondensedSolver<dim>>(
         problem,
         node_positions(levels.dof_handler(), problem.constraints),
-        settings);
-    return condensed->is_worthwhile(n_cycles);
+        settings,
+        Iterate(search.u, search.state));
+    if (!condensed->is_worthwhile(n_cycles))
+      return false;
+    condensed->give_up_beyond(allowed_growth * n_cycles);
+    return true;
   }
 
 
@@ -237,10 +274,11 @@ namespace Friction
   // A step takes a factorisation there, and some iterations elsewhere.
   template <int dim>
   bool
-  SafeguardedSolver<dim>::newton_is_for_contact_nodes_alone()
+  SafeguardedSolver<dim>::newton_is_for_contact_nodes_alone(
+    const Search &search)
   {
-    return settings.condensation && has_defaults(settings) &&
-      contact_nodes_alone_take_less(cycles_to_the_end<dim>);
+    return may_condense() &&
+      contact_nodes_alone_take_less(search, cycles_to_the_end<dim>);
   }
 
 
@@ -269,10 +307,10 @@ namespace Friction
     const typename Condensed::By method,
     const CoulombSettings       &limits)
   {
-    if (!newton_is_for_contact_nodes_alone())
+    if (!newton_is_for_contact_nodes_alone(search))
       return {};
     const SolverReport report = solve_condensed(search, method, limits);
-    if (!newton_is_for_contact_nodes_alone())
+    if (!condensed->is_worthwhile(Condensed::most_cycles))
       return {};
     return report;
   }
@@ -617,7 +655,7 @@ namespace Friction
     const bool others_have_failed =
       !all.attempts.empty() || begin_with == Method::contact_nodes;
     if (report.converged || is_condensed ||
-        !solver.contact_nodes_alone_are_better(others_have_failed) ||
+        !solver.contact_nodes_alone_are_better(search, others_have_failed) ||
         !begin(is_condensed))
       return;
     start_anew_unless_guess_is_better();
@@ -666,7 +704,8 @@ namespace Friction
   std::string
   SafeguardedSolver<dim>::Attempts::where_newton_is() const
   {
-    return solver.newton_is_for_contact_nodes_alone() ? on_contact_nodes : "";
+    return solver.newton_is_for_contact_nodes_alone(search) ? on_contact_nodes
+                                                            : "";
   }
 
 
@@ -726,7 +765,7 @@ namespace Friction
   SafeguardedSolver<dim>::Attempts::try_what_knows_the_law()
   {
     if (report.converged || !is_condensed ||
-        !solver.newton_is_for_contact_nodes_alone())
+        !solver.newton_is_for_contact_nodes_alone(search))
       return;
     try_newton();
     try_continuation(/*is_last =*/false);
@@ -741,6 +780,8 @@ namespace Friction
   SafeguardedSolver<dim>::Attempts::try_what_has_solved_the_mesh_before()
   {
     const bool much_friction = solver.much_friction();
+    if (report.converged)
+      return;
     if (begin_with == Method::newton && much_friction)
       try_newton();
     else if (begin_with == Method::aggregates &&
@@ -771,7 +812,7 @@ namespace Friction
 
     // Here it is known beforehand what coarse levels are worth.
     if (begin_with == Method::newton &&
-        solver.newton_is_for_contact_nodes_alone())
+        solver.newton_is_for_contact_nodes_alone(search))
       try_newton();
     try_contact_nodes_alone();
     try_what_knows_the_law();
@@ -835,6 +876,31 @@ namespace Friction
     report.costs       = phase_costs(comm) - before;
     report.next_method = solver.next_method;
     return report;
+  }
+
+
+
+  template <int dim>
+  bool
+  SafeguardedSolver<dim>::begins_with_contact_nodes_alone(const Search &search)
+  {
+    return (next_method == Method::newton &&
+            newton_is_for_contact_nodes_alone(search)) ||
+      contact_nodes_alone_are_better(search,
+                                     next_method == Method::contact_nodes);
+  }
+
+
+
+  template <int dim>
+  void
+  SafeguardedSolver<dim>::prepare(VectorType &u, ContactState &state)
+  {
+    const RunScope part(problem.communicator(), RunPart::solution);
+    const Progress none;
+    if (!settings.safeguards ||
+        !begins_with_contact_nodes_alone({u, state, none, 0.}))
+      levels.make_now();
   }
 
 

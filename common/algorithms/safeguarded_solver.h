@@ -20,13 +20,14 @@ namespace Friction
    * nowhere, by what may succeed:
    *
    * 1. the algorithm of the settings on contact nodes alone, see
-   *    CondensedSolver, where coarse functions are known to be of little help:
-   *    materials jump, or are nearly incompressible, or most nodes of a body in
-   *    three dimensions are in lines. There have to be so few unknowns that
-   *    this takes no longer than cycles, and with much friction it has to show
-   *    soon that it gets somewhere. What fails there does not fail for want of
-   *    good levels, so that what knows the law is tried next: 6., 7. and 9., on
-   *    contact nodes alone as well;
+   *    CondensedSolver, if that takes no longer than a few cycles, and these go
+   *    on to a given tolerance; or where coarse functions are known to be of
+   *    little help: materials jump, or are nearly incompressible, or most nodes
+   *    of a body in three dimensions are in lines. There have to be so few
+   *    unknowns that this takes no longer than cycles, and with much friction
+   *    it has to show soon that it gets somewhere. What fails there does not
+   * fail for want of good levels, so that what knows the law is tried
+   * next: 6., 7. and 9., on contact nodes alone as well;
    * 2. the algorithm of the settings, by default Algorithm 3. With much
    *    friction, or where materials jump, it has to show soon that it gets
    *    somewhere;
@@ -94,6 +95,13 @@ namespace Friction
                       const Method            first = Method::algorithm);
 
     /**
+     * Makes the levels, unless contact nodes alone are going to be tried first.
+     * Otherwise solve() does that, for callers that do not count its time
+     * apart. Collective. The arguments are the initial guess.
+     */
+    void prepare(VectorType &u, ContactState &state);
+
+    /**
      * Solves, and certifies the solution; as CoulombSolver::solve(). The report
      * is that of the last attempt, with the cycles of all of them; if none has
      * succeeded, residual, energy and certificate are those of what is
@@ -158,7 +166,12 @@ namespace Friction
 
     bool coarse_cells_may_be_to_blame();
 
-    bool contact_nodes_alone_are_better(const bool others_have_failed);
+    bool may_condense() const;
+
+    bool begins_with_contact_nodes_alone(const Search &search);
+
+    bool contact_nodes_alone_are_better(const Search &search,
+                                        const bool    others_have_failed);
 
     using Condensed = CondensedSolver<dim>;
 
@@ -174,9 +187,10 @@ namespace Friction
 
     SolverReport contact_nodes_alone(const Search &search);
 
-    bool contact_nodes_alone_take_less(const double n_cycles);
+    bool contact_nodes_alone_take_less(const Search &search,
+                                       const double  n_cycles);
 
-    bool newton_is_for_contact_nodes_alone();
+    bool newton_is_for_contact_nodes_alone(const Search &search);
 
     SolverReport aggregate_corrections(const Search &search);
 

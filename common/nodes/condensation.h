@@ -10,8 +10,8 @@
 namespace Friction
 {
   /**
-   * Static condensation (Guyan 1965): all nodes but some, here those of the
-   * contact boundary, are eliminated from $Au=f$ once and for all. With c for
+   * Static condensation (Guyan 1965): all nodes but some, here those near
+   * the contact zone, are eliminated from $Au=f$ once and for all. With c for
    * the nodes that are kept and i for the others,
    * @f[ S\,u_c = f_c - A_{ci}A_{ii}^{-1}f_i, \qquad
    *     S = A_{cc} - A_{ci}A_{ii}^{-1}A_{ic}, \qquad

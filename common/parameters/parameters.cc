@@ -565,8 +565,7 @@ namespace Friction
         for (const std::string name :
              {"Outer tolerance", "Maximum outer iterations"})
           only_with("Solver/" + name, "Solver/Algorithm", {"fixed point"});
-      for (const std::string name : {"Total cycles", "Condensation"})
-        only_with("Solver/" + name, "Solver/Safeguards", yes);
+      only_with("Solver/Total cycles", "Solver/Safeguards", yes);
       only_with("Solver/Recombined steps",
                 "Solver/Coarse correction",
                 {"truncated", "aggregates", "algebraic"});
@@ -852,8 +851,12 @@ namespace Friction
       solver.outer_damping       = values.number("Solver/Outer damping");
       solver.mixed_outer_iterations =
         values.integer("Solver/Mixed outer iterations");
-      solver.safeguards   = values.flag("Solver/Safeguards");
-      solver.condensation = values.flag("Solver/Condensation");
+      solver.safeguards              = values.flag("Solver/Safeguards");
+      const std::string condensation = values.get("Solver/Condensation");
+      solver.condensation = (condensation == "never" ? CondensationUse::never
+                               : condensation == "where quicker"
+                               ? CondensationUse::where_quicker
+                               : CondensationUse::where_cycles_are_many);
     }
 
     {

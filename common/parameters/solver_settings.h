@@ -49,6 +49,17 @@ namespace Friction
     algebraic_multigrid ///< by conjugate gradients with algebraic multigrid
   };
 
+  /**
+   * Where the problem is solved on contact nodes alone, see CondensedSolver.
+   */
+  enum class CondensationUse
+  {
+    never,
+    where_cycles_are_many, ///< for a known reason, or because others have
+                           ///< failed
+    where_quicker          ///< there, and on small meshes
+  };
+
   enum class TruncationVariant
   {
     phases,                     ///< stick: all components; slip: the normal one
@@ -135,9 +146,8 @@ namespace Friction
     /// SafeguardedSolver.
     bool safeguards = true;
 
-    /// Whether these may leave levels alone, where they know a body for which
-    /// factors are better, or others have failed; see CondensedSolver.
-    bool condensation = true;
+    /// Where these may leave levels alone.
+    CondensationUse condensation = CondensationUse::where_quicker;
 
     /// Whether the volume of the body, or of a part of it, hardly changes: more
     /// sweeps are wanted then than the levels have otherwise.

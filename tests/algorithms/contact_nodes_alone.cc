@@ -5,9 +5,15 @@
 // meshes with hanging nodes, on any number of processes; the second call has
 // nothing left to do. Histories and platens come out the same with and without
 // it. Where it knows that coarse levels will not do, SafeguardedSolver begins
-// with it.
+// with it; and on small meshes, where no levels are made then.
+//
+// The guess of a long block touches nowhere: of its contact nodes a few are
+// kept, and more and more of them until all that touch are, with the same
+// solution as if all had been kept from the beginning; also if the first few
+// cannot hold the body, which then runs away.
 
 #include <common/algorithms/condensed_solver.h>
+#include <common/algorithms/contact_solver.h>
 #include <common/algorithms/nested_iteration.h>
 #include <common/iteration/algebraic_correction.h>
 #include <common/levels/aggregate_levels.h>
@@ -52,11 +58,14 @@ namespace test_contact_nodes_alone
       CoulombSolver<dim>(iteration, limits).solve(u, state).converged,
       "  solved by the whole matrix");
 
-    using By = typename CondensedSolver<dim>::By;
+    using By                         = typename CondensedSolver<dim>::By;
+    VectorType           guess       = start;
+    ContactState         guess_state = start_state;
     CondensedSolver<dim> condensed(
       problem,
       node_positions(whole.discretization.dof_handler(), problem.constraints),
-      settings);
+      settings,
+      Iterate(guess, guess_state));
     check_everywhere(condensed.is_worthwhile(24.), "  the body is small");
     for (const std::string by : {"", "Newton's method", "Algorithm 2"})
       {
@@ -164,7 +173,7 @@ namespace test_contact_nodes_alone
     for (const bool condensation : {false, true})
       {
         entries.push_back(std::string("Solver/Condensation=") +
-                          (condensation ? "true" : "false"));
+                          (condensation ? "where cycles are many" : "never"));
         NestedIteration<dim> nest(block_scene<dim>(entries));
         nest.begin();
         do
@@ -192,6 +201,106 @@ namespace test_contact_nodes_alone
     check_everywhere(converged && found[0].size() == 3, name + ": solved");
     check_everywhere(is_condensed, "  on contact nodes alone");
     check_everywhere(distance < bound, "  displacements are the same");
+  }
+
+
+
+  template <int dim>
+  void
+  test_growing_zone(const std::string              &name,
+                    const std::vector<std::string> &entries)
+  {
+    std::vector<std::string> all = {
+      "Solver/Inner tolerance=1e-11",
+      "Refinement/Initial refinements=0",
+      "Boundary conditions/Displacement=" +
+        std::string(dim == 2 ? "3: 0.002, -0.01" : "5: 0.002, 0, -0.01"),
+      "Obstacle/Point=" + std::string(dim == 2 ? "0, -0.002" : "0, 0, -0.002")};
+    all.insert(all.end(), entries.begin(), entries.end());
+    NestedIteration<dim> nest(block_scene<dim>(all));
+    nest.begin();
+    const Discretization<dim>  &d        = nest.discretization();
+    const DiscreteProblem<dim>  problem  = d.problem();
+    const SolverSettings       &settings = nest.parameters().solver;
+    const TrescaFunctional<dim> functional(problem);
+    const CoulombSettings       limits(settings);
+
+    // From a guess that touches nowhere, and from one that does everywhere.
+    VectorType   u[2]     = {admissible_start(d), admissible_start(d)};
+    ContactState state[2] = {ContactState(problem.contact.size(), true),
+                             ContactState(problem.contact.size(), true)};
+    for (unsigned int p = 0; p < problem.contact.size(); ++p)
+      state[1].set(p, true, false);
+    std::size_t memory[2];
+    for (unsigned int k = 0; k < 2; ++k)
+      {
+        CondensedSolver<dim> condensed(
+          problem,
+          node_positions(d.dof_handler(), problem.constraints),
+          settings,
+          Iterate(u[k], state[k]));
+        const SolverReport report =
+          condensed.solve(functional,
+                          Iterate(u[k], state[k], true),
+                          CondensedSolver<dim>::By::coulomb_solver,
+                          limits,
+                          {});
+        check_everywhere(
+          report.converged && report.certificate.largest() < 1e-8,
+          (k == 0 ? name + ": " : "  ") + "solved from a guess" +
+            (k == 0 ? " that touches nowhere" : " that touches"));
+        memory[k] = condensed.memory_consumption();
+      }
+    VectorType difference = u[0];
+    difference -= u[1];
+    check_everywhere(difference.linfty_norm() < 1e-9 * u[1].linfty_norm(),
+                     "  displacements are the same");
+    bool same = true;
+    for (unsigned int p = 0; p < state[0].size(); ++p)
+      same = same && state[0].in_contact(p) == state[1].in_contact(p) &&
+        state[0].sticks(p) == state[1].sticks(p);
+    check_everywhere(same, "  phases are");
+    const bool fewer = memory[0] < memory[1];
+    check_everywhere(fewer == (name == "a long block on one of its ends"),
+                     std::string("  ") + (fewer ? "" : "not ") +
+                       "by fewer nodes in the end");
+  }
+
+
+
+  // No level is made on a small mesh.
+  template <int dim>
+  void
+  test_small_mesh()
+  {
+    VectorType found[2];
+    for (const bool is_quicker : {false, true})
+      {
+        NestedIteration<dim> nest(
+          block_scene<dim>({"Solver/Inner tolerance=1e-11",
+                            std::string("Refinement/Initial refinements=") +
+                              (dim == 2 ? "3" : "2"),
+                            std::string("Solver/Condensation=where ") +
+                              (is_quicker ? "quicker" : "cycles are many")}));
+        nest.begin();
+        const Discretization<dim> &d = nest.discretization();
+        ContactSolver<dim>         solver(d, nest.parameters().solver);
+        VectorType                &u     = found[is_quicker];
+        ContactState               state = nest.make_guess(u);
+        solver.prepare(u, state);
+        const SolverReport report = solver.solve(u, state);
+        check_everywhere(report.converged &&
+                           report.attempts.empty() != is_quicker,
+                         std::string("small mesh: solved on ") +
+                           (is_quicker ? "contact nodes alone" : "levels"));
+        check_everywhere(
+          (solver.levels().memory_consumption() == 0) == is_quicker,
+          std::string("  levels are ") + (is_quicker ? "not made" : "made"));
+      }
+    VectorType difference = found[0];
+    difference -= found[1];
+    check_everywhere(difference.linfty_norm() < 1e-9 * found[0].linfty_norm(),
+                     "  displacements are the same");
   }
 
 
@@ -240,6 +349,22 @@ TEST(contact_nodes_alone)
   test_history<3>("history",
                   {"Boundary conditions/Displacement=5: " + to_and_fro +
                    "0.01, -0.02; 2: free, 0, free"});
+  test_growing_zone<2>("a long block",
+                       {"Scene/Size=8, 1", "Scene/Subdivisions=64, 4"});
+  test_growing_zone<2>("a long block on one of its ends",
+                       {"Scene/Size=8, 1",
+                        "Scene/Subdivisions=64, 4",
+                        "Obstacle/Normal=-0.05, -1"});
+  test_growing_zone<2>("a long block that nothing else holds",
+                       {"Scene/Size=8, 1",
+                        "Scene/Subdivisions=64, 4",
+                        "Obstacle/Normal=-0.001, -1",
+                        "Boundary conditions/Displacement=3: 0, free",
+                        "Boundary conditions/Traction=3: 0, -0.01"});
+  test_growing_zone<3>("a long block",
+                       {"Scene/Size=6, 1, 1", "Scene/Subdivisions=24, 2, 2"});
+  test_small_mesh<2>();
+  test_small_mesh<3>();
   const std::string layer = "Material/Regions=where abs(y - 0.33) < 0.1: ";
   test_safeguards<2>("a block", "Solver/Safeguards=true", false);
   test_safeguards<2>("one with a stiff layer", layer + "1e3*E, nu", true);

@@ -26,7 +26,7 @@ namespace test_jumps
             std::string("Refinement/Initial refinements=") +
               (dim == 2 ? "3" : "1"),
             std::string("Refinement/Levels=") + (dim == 2 ? "3" : "2"),
-            "Solver/Condensation=false",
+            "Solver/Condensation=never",
             "Material/Regions=where " + stiff + ": 1e6*E, nu"};
   }
 

@@ -99,7 +99,8 @@ namespace test_shared_parts
 
     std::size_t      before = allocated;
     ContactSolver<2> solver(nest.discretization(), nest.parameters().solver);
-    const double     construction = allocated - before;
+    solver.prepare(u, state);
+    const double construction = allocated - before;
     check(construction > 1e5, "a solver takes 100 kB or more");
 
     before                    = allocated;
@@ -117,7 +118,7 @@ namespace test_shared_parts
 
 TEST(shared_parts)
 {
-  test("The parts of the default", {"Solver/Condensation=false"});
+  test("The parts of the default", {"Solver/Condensation=never"});
   test("Others, which the safeguards exchange",
        {"Solver/Truncation=contact", "Solver/Coarse correction=monotone"});
 }

@@ -196,7 +196,7 @@ namespace benchmark_cost
                 "smoother and level matrices %.0f; peak of the process %.0f\n",
                 d.stiffness().memory_consumption() / n_dofs,
                 solver.levels().hierarchy().memory_consumption() / n_dofs,
-                solver.iteration().memory_consumption() / n_dofs,
+                nest.report().solver_memory / n_dofs,
                 peak_memory() / n_dofs);
 
     // After the peak of the memory has been read.

@@ -38,6 +38,7 @@ def run(dim, scene, n_processes, *entries):
         command = [program[dim], os.path.join(scenes[dim], scene + ".prm"),
                    "Output/Directory=" + directory, "Output/Fields=false",
                    "Solver/Inner tolerance=1e-9",
+                   "Solver/Condensation=where cycles are many",
                    "Output/Profile=true", "Output/Verbosity=levels", *entries]
         if n_processes > 1:
             command = [mpiexec, "-np", str(n_processes)] + command

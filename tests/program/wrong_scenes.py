@@ -644,7 +644,7 @@ CASES = [
      ['is no contact node has gone through the surface of the obstacle, by .* at '
       r'\(2, 0\)']),
     (13, 'a body that hangs over the edge of what it lies on', 'mesh',
-     mesh('half-bottom', **{'Obstacle/Point': '0, 0.1', D: '4: 0.01, 0.1'}), 'warning',
+     mesh('half-bottom', **{'Obstacle/Point': '0, 0.1', D: '4: 0.01, 0.09'}), 'warning',
      ['the body lies inside the obstacle before']),
     (13, 'a node in the obstacle that cannot get out', 'pressed', {
         'Obstacle/Kind': 'surface', 'Obstacle/Function': 'min(y, x - 0.6)'}, 'warning',

@@ -32,6 +32,9 @@ namespace Tests
     p.contact.normal               = ContactNormal::body;
     p.contact.friction_law         = law;
     p.contact.friction_coefficient = friction_coefficient;
+
+    // Such problems are small, and there to test the multigrid method.
+    p.solver.condensation = CondensationUse::where_cycles_are_many;
     return p;
   }
 

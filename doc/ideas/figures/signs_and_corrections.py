@@ -13,7 +13,7 @@ LAYER = "Material/Regions=where abs(y - 0.33) < 0.06: 1e6*E, nu"
 # Title, scene, refinements, entries.
 RUNS = (("no sign", "block", 3, ()),
         ("slow: a stiff layer, first mesh", "block", 0,
-         (LAYER, "Solver/Condensation=false")),
+         (LAYER, "Solver/Condensation=never")),
         ("to and fro: friction 10, second mesh", "raous", 1,
          ("Contact/Friction coefficient=10",)),
         ("learnt: friction 10, fifth mesh", "raous", 4,

@@ -302,6 +302,7 @@ namespace Benchmark
                               problem,
                               settings,
                               settings.safeguards ? first : Method::algorithm);
+    solver.prepare(u, state);
     recorder.end_setup();
     const SolverReport solution =
       solver.solve(u, state, [&](const unsigned int, const double) {
@@ -310,8 +311,7 @@ namespace Benchmark
     BaselineReport report;
     report.converged  = solution.converged;
     report.iterations = solution.cycles.size();
-    report.memory =
-      solver.levels().hierarchy().memory_consumption() + solution.solver_memory;
+    report.memory     = solution.solver_memory;
     if (!solution.attempts.empty())
       {
         report.n_attempts = solution.attempts.size();
