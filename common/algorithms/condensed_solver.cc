@@ -255,18 +255,16 @@ namespace Friction
 
 
 
-  // Returns whether the problem that is left is there to be solved.
+  // Returns whether what touches had not been kept.
   template <int dim>
   bool
-  CondensedSolver<dim>::keep_what_touches(const Iterate &x)
+  CondensedSolver<dim>::grow_zone(const Iterate &x)
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
-    if (zone->grow(x.u, x.state))
-      {
-        move_out_of_obstacle(x.u);
-        keep_zone();
-      }
-    return is_worthwhile(limit) && factorize();
+    if (!zone->grow(x.u, x.state))
+      return false;
+    keep_zone();
+    return true;
   }
 
 
@@ -276,6 +274,7 @@ namespace Friction
   bool
   CondensedSolver<dim>::factorize()
   {
+    const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
     while (tree && !condensation && !has_failed)
       {
         condensation =
@@ -399,10 +398,10 @@ namespace Friction
     const ContactState     start_state = x.state;
     std::vector<CycleInfo> cycles;
     SolverReport           report;
-    bool                   is_too_small = false;
-    do
+    grow_zone(x);
+    while (true)
       {
-        if (!keep_what_touches(x))
+        if (!is_worthwhile(limit) || !factorize())
           {
             report = SolverReport();
             break;
@@ -415,9 +414,12 @@ namespace Friction
           }
         report = solve_in_zone(functional, x, method, limits, progress);
         cycles.insert(cycles.end(), report.cycles.begin(), report.cycles.end());
-    } while ((is_too_small = zone->misses(x.u, x.state)) &&
-             !(limits.limits.budget && limits.limits.budget->is_spent()));
-    report.converged = report.converged && !is_too_small;
+        if (!grow_zone(x))
+          break;
+        report.converged = false;
+        if (limits.limits.budget && limits.limits.budget->is_spent())
+          break;
+      }
 
     if (!report.converged)
       {

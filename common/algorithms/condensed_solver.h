@@ -120,7 +120,7 @@ namespace Friction
 
     void gather_matrix();
 
-    bool keep_what_touches(const Iterate &x);
+    bool grow_zone(const Iterate &x);
     void keep_zone();
     bool factorize();
 

@@ -26,8 +26,8 @@ namespace Friction
    *    of a body in three dimensions are in lines. There have to be so few
    *    unknowns that this takes no longer than cycles, and with much friction
    *    it has to show soon that it gets somewhere. What fails there does not
-   * fail for want of good levels, so that what knows the law is tried
-   * next: 6., 7. and 9., on contact nodes alone as well;
+   *    fail for want of good levels, so that what knows the law is tried next:
+   *    6., 7. and 9., on contact nodes alone as well;
    * 2. the algorithm of the settings, by default Algorithm 3. With much
    *    friction, or where materials jump, it has to show soon that it gets
    *    somewhere;

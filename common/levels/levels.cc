@@ -40,18 +40,16 @@ namespace Friction
   void
   Levels<dim>::make_now() const
   {
-    if (!made)
-      made = std::make_unique<Parts>(RunScope(communicator(), RunPart::levels),
-                                     leaf_and_levels,
-                                     problem,
-                                     coarsest_method);
+    if (made)
+      return;
+    const RunScope part(communicator(), RunPart::levels);
+    made = std::make_unique<Parts>(leaf_and_levels, problem, coarsest_method);
   }
 
 
 
   template <int dim>
-  Levels<dim>::Parts::Parts(const RunScope &,
-                            const DoFHandler<dim>      &dof_handler,
+  Levels<dim>::Parts::Parts(const DoFHandler<dim>      &dof_handler,
                             const DiscreteProblem<dim> &problem,
                             const CoarsestMethod        coarsest_method)
     : hierarchy(dof_handler, problem.constraints, problem.stiffness.blocks())

@@ -177,9 +177,7 @@ namespace Friction
     // What there is once they have been made.
     struct Parts
     {
-      // The first argument counts the time.
-      Parts(const RunScope &,
-            const DoFHandler<dim>      &dof_handler,
+      Parts(const DoFHandler<dim>      &dof_handler,
             const DiscreteProblem<dim> &problem,
             const CoarsestMethod        coarsest_method);
 
