@@ -6,7 +6,6 @@
 #include <deal.II/base/mpi.h>
 
 #include <deal.II/lac/trilinos_precondition.h>
-#include <deal.II/lac/trilinos_solver.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <algorithm>
@@ -36,8 +35,6 @@ namespace Friction
                                    const unsigned int   n_components)
     : method(method)
     , n_components(n_components)
-    , control(1, 0.)
-    , shifted_matrix(std::make_unique<TrilinosWrappers::SparseMatrix>())
     , hierarchy_matrix(std::make_unique<TrilinosWrappers::SparseMatrix>())
   {}
 
@@ -57,7 +54,7 @@ namespace Friction
     else
       // A factorisation may be left of a matrix that nothing else could cope
       // with. A hierarchy is kept.
-      factorization.reset();
+      has_factors = false;
   }
 
 
@@ -84,38 +81,24 @@ namespace Friction
   void
   AlgebraicSolver::factorize()
   {
-    const auto factorize_matrix =
-      [&](const TrilinosWrappers::SparseMatrix &which) {
-        factorization =
-          std::make_unique<TrilinosWrappers::SolverDirect>(control);
-        factorization->initialize(which);
-      };
-    // All processes go on in the same way, whichever of them the factorisation
-    // has failed on.
-    const MPI_Comm comm   = matrix->get_mpi_communicator();
-    bool           is_bad = false;
-    try
+    if (!factors.factorize(*matrix))
       {
-        factorize_matrix(*matrix);
-      }
-    catch (const ExceptionBase &)
-      {
-        is_bad = true;
-      }
-    if (true_on_any_process(is_bad, comm))
-      {
+        const MPI_Comm comm    = matrix->get_mpi_communicator();
         const IndexSet owned   = matrix->locally_owned_range_indices();
         double         largest = 0.;
         for (const auto i : owned)
           largest = std::max(largest, matrix->diag_element(i));
         largest = Utilities::MPI::max(largest, comm);
-        shifted_matrix->copy_from(*matrix);
+        TrilinosWrappers::SparseMatrix shifted;
+        shifted.copy_from(*matrix);
         for (const auto i : owned)
-          shifted_matrix->add(i, i, 1e-10 * largest);
-        shifted_matrix->compress(VectorOperation::add);
-        factorize_matrix(*shifted_matrix);
+          shifted.add(i, i, 1e-10 * largest);
+        shifted.compress(VectorOperation::add);
+        AssertThrow(factors.factorize(shifted),
+                    ExcMessage("The matrix is not positive semidefinite."));
       }
-    is_current = true;
+    has_factors = true;
+    is_current  = true;
     ++setups;
   }
 
@@ -159,7 +142,7 @@ namespace Friction
     if (is_direct() && is_thin.value_or(false))
       conjugate_gradients(x, b, [](VectorType &) {});
     else if (is_direct())
-      factorization->solve(x, b);
+      factors.solve(x, b);
     else
       {
         iterate(x, b, [](VectorType &) {});
@@ -262,7 +245,7 @@ namespace Friction
   AlgebraicSolver::precondition(VectorType &x, const VectorType &b)
   {
     if (is_direct())
-      factorization->solve(x, b);
+      factors.solve(x, b);
     else
       hierarchy->vmult(x, b);
   }

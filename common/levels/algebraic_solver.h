@@ -1,11 +1,10 @@
 #ifndef friction_levels_algebraic_solver_h
 #define friction_levels_algebraic_solver_h
 
+#include <common/levels/sparse_factors.h>
 #include <common/levels/trilinos_names.h>
 #include <common/nodes/nodal_constraints.h>
 #include <common/parameters/solver_settings.h>
-
-#include <deal.II/lac/solver_control.h>
 
 #include <functional>
 #include <memory>
@@ -14,10 +13,10 @@
 namespace Friction
 {
   /**
-   * Solves linear systems of which nothing is known but the matrix, by
-   * Trilinos: by a sparse factorisation as long as that is the quicker way,
-   * otherwise by conjugate gradients preconditioned with algebraic multigrid
-   * (smoothed aggregation, Vanek, Mandel, Brezina 1996).
+   * Solves linear systems of which nothing is known but the matrix: by
+   * SparseFactors as long as that is the quicker way, otherwise by conjugate
+   * gradients preconditioned with the algebraic multigrid of Trilinos (smoothed
+   * aggregation, Vanek, Mandel, Brezina 1996).
    *
    * The matrix is symmetric and positive definite, up to directions that right
    * hand sides have no part in; its rows may be owned by any of the processes,
@@ -88,7 +87,7 @@ namespace Friction
     bool
     is_direct() const
     {
-      return factorization != nullptr;
+      return has_factors;
     }
 
     /** Conjugate gradient iterations in the last solution; 0 if it was direct,
@@ -118,11 +117,8 @@ namespace Friction
     const unsigned int                    n_components;
     const TrilinosWrappers::SparseMatrix *matrix = nullptr;
 
-    // The factorisation, and the matrix it belongs to if that is not the given
-    // one.
-    SolverControl                                   control;
-    std::unique_ptr<TrilinosWrappers::SparseMatrix> shifted_matrix;
-    std::unique_ptr<TrilinosWrappers::SolverDirect> factorization;
+    SparseFactors factors;
+    bool          has_factors = false;
 
     std::unique_ptr<TrilinosWrappers::SparseMatrix>    hierarchy_matrix;
     std::unique_ptr<TrilinosWrappers::PreconditionAMG> hierarchy;
