@@ -1,5 +1,5 @@
 #include <common/algorithms/condensed_solver.h>
-#include <common/algorithms/newton_solver.h>
+#include <common/algorithms/newton_finish.h>
 #include <common/iteration/dense_correction.h>
 #include <common/iteration/dense_newton_step.h>
 #include <common/parallel/reductions.h>
@@ -26,6 +26,10 @@ namespace Friction
 
     template <int dim>
     constexpr types::global_dof_index largest = (dim == 2 ? 60000 : 20000);
+
+    // Cycles that Newton's method may save once phases have settled: a step of
+    // it takes as long as a cycle.
+    constexpr unsigned int longest_dense_end = 4;
 
     // The certificate of a solution, as a part of the tolerance, with which
     // nothing remains to be done; and how often to correct rounding errors of
@@ -118,7 +122,11 @@ namespace Friction
     {
       return method == By::newton_solver
         ? solve_by_newton(newton, u, state, limits, progress)
-        : CoulombSolver<dim>(iteration, limits).solve(u, state, progress);
+        : NewtonFinish<dim>(
+            iteration,
+            [this]() -> NewtonSolver<dim> & { return newton; },
+            longest_dense_end)
+            .solve(u, state, limits, progress);
     }
 
     std::size_t
@@ -593,6 +601,7 @@ namespace Friction
       return;
     std::vector<double> values = {double(report.converged),
                                   double(report.inner_converged),
+                                  double(report.finished_by_newton),
                                   double(report.outer_iterations),
                                   report.contraction,
                                   report.algebraic_error,
@@ -613,13 +622,14 @@ namespace Friction
                      state.normal_force(p)});
     values = Utilities::MPI::broadcast(problem.communicator(), values, 0);
 
-    auto next               = values.begin();
-    report.converged        = *next++;
-    report.inner_converged  = *next++;
-    report.outer_iterations = *next++;
-    report.contraction      = *next++;
-    report.algebraic_error  = *next++;
-    report.energy           = *next++;
+    auto next                 = values.begin();
+    report.converged          = *next++;
+    report.inner_converged    = *next++;
+    report.finished_by_newton = *next++;
+    report.outer_iterations   = *next++;
+    report.contraction        = *next++;
+    report.algebraic_error    = *next++;
+    report.energy             = *next++;
     report.cycles.resize(*next++);
     for (CycleInfo &cycle : report.cycles)
       for (double *value : {&cycle.increment,

@@ -100,6 +100,35 @@ namespace Friction
 
 
 
+  bool
+  MultigridResult::phases_have_settled() const
+  {
+    constexpr unsigned int window = 4;
+    const std::size_t      n      = cycles.size();
+    for (unsigned int i = 1; i <= window; ++i)
+      if (n < i || cycles[n - i].truncated != cycles.back().truncated)
+        return false;
+    return true;
+  }
+
+
+
+  double
+  MultigridResult::cycles_until(const double tolerance) const
+  {
+    constexpr unsigned int window = 4;
+    const std::size_t      n      = cycles.size();
+    if (n <= window)
+      return 0.;
+    const double now = cycles.back().increment;
+    const double rate =
+      std::pow(now / cycles[n - 1 - window].increment, 1. / window);
+    return rate < 1 ? std::max(0., std::log(tolerance / now) / std::log(rate))
+                    : std::numeric_limits<double>::infinity();
+  }
+
+
+
   template <int dim>
   MultigridResult
   run_multigrid(MonotoneMultigrid<dim> &iteration,
@@ -181,13 +210,18 @@ namespace Friction
             result.converged = true;
             break;
           }
+        const double tolerance =
+          std::max(limits.inner_tolerance, limits.energy_tolerance / size);
+        if (limits.finish && result.phases_have_settled() &&
+            limits.finish(cycle, result.cycles_until(tolerance)))
+          {
+            result.converged = true;
+            break;
+          }
         if (cycle >= limits.maximum_cycles ||
             (limits.budget && limits.budget->is_spent()) ||
             (limits.patience > 0 &&
-             result.stalls(
-               std::max(limits.inner_tolerance, limits.energy_tolerance / size),
-               worthwhile,
-               limits.patience)))
+             result.stalls(tolerance, worthwhile, limits.patience)))
           break;
       }
     return result;

@@ -102,6 +102,13 @@ namespace Friction
     unsigned int patience          = 0;
     unsigned int worthwhile_cycles = std::numeric_limits<unsigned int>::max();
 
+    /// Asked after each cycle once phases have settled; is told the number of
+    /// cycles done, and how many more there would be at the pace of the last
+    /// ones. What it says is whether the iterate is the solution now: it may
+    /// have made it so, and must leave it as it was if not. Empty if there is
+    /// nobody to ask.
+    std::function<bool(const unsigned int, const double)> finish;
+
     /// Ends when these are spent; null for no such limit.
     std::shared_ptr<CycleBudget> budget;
   };
@@ -117,6 +124,14 @@ namespace Friction
     /// Energy norm of the error of the last iterate, extrapolated from the last
     /// increments.
     double algebraic_error = 0;
+
+    /** Whether in the last four cycles as many components were held as now. */
+    bool phases_have_settled() const;
+
+    /** Cycles until increments would be as small as @p tolerance, at the pace
+     * of the last four of them; infinity if they do not get smaller, and zero
+     * if there are too few to tell. */
+    double cycles_until(const double tolerance) const;
 
     /** Mean contraction of the increments, per cycle; zero if there were fewer
      * than two. */

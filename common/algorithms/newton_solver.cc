@@ -128,6 +128,8 @@ namespace Friction
         if (limits.budget)
           most = std::min(most, limits.budget->cycles_left());
         typename NewtonStep<dim>::Outcome linear;
+        if (limits.patience > 0)
+          most = std::min(most, limits.patience);
         if (sum_over_processes(dot_owned(rhs, rhs), comm) > 0.)
           {
             linear = linear_solver.solve(unknown, rhs, forcing, most);
@@ -204,7 +206,9 @@ namespace Friction
             break;
           }
         if (result.cycles.size() >= limits.maximum_cycles ||
-            (limits.budget && limits.budget->is_spent()))
+            (limits.budget && limits.budget->is_spent()) ||
+            (limits.patience > 0 &&
+             (linear.accuracy > largest_forcing || length < .5)))
           break;
         const double ratio = before > 0 ? wrong / before : 1.;
         forcing            = std::min(largest_forcing, .9 * ratio * ratio);

@@ -50,6 +50,11 @@ namespace Friction
 
 
 
+    // Cycles that Newton's method may save once phases have settled.
+    constexpr unsigned int longest_end = 20;
+
+
+
     // How many times as long as has been expected it may take if more nodes
     // turn out to touch.
     constexpr double allowed_growth = 3;
@@ -337,8 +342,7 @@ namespace Friction
       aggregates = std::make_unique<AggregateCorrection<dim>>(
         levels, problem, settings.cycle, settings.coarse_smoothing_steps);
     MonotoneMultigrid<dim> best = iteration.with(*aggregates);
-    return CoulombSolver<dim>(best, later_settings(search.accuracy))
-      .solve(search.u, search.state, search.progress);
+    return algorithm_to_the_end(best, later_settings(search.accuracy), search);
   }
 
 
@@ -407,14 +411,9 @@ namespace Friction
 
 
   template <int dim>
-  SolverReport
-  SafeguardedSolver<dim>::newton_method(const Search &search)
+  NewtonSolver<dim> &
+  SafeguardedSolver<dim>::newton_with_levels()
   {
-    const CoulombSettings its_settings = later_settings(search.accuracy);
-    if (const std::optional<SolverReport> report = condensed_if_cheap(
-          search, Condensed::By::newton_solver, its_settings))
-      return *report;
-
     if (!newton)
       {
         truncated = std::make_unique<TruncatedCorrection<dim>>(
@@ -428,8 +427,46 @@ namespace Friction
         newton = std::make_unique<NewtonSolver<dim>>(iteration.functional(),
                                                      *newton_step);
       }
-    SolverReport report = solve_by_newton(
-      *newton, search.u, search.state, its_settings, search.progress);
+    return *newton;
+  }
+
+
+
+  template <int dim>
+  SolverReport
+  SafeguardedSolver<dim>::algorithm_to_the_end(
+    MonotoneMultigrid<dim> &its_iteration,
+    const CoulombSettings  &its_settings,
+    const Search           &search)
+  {
+    if (!has_defaults(settings) || settings.nearly_incompressible ||
+        materials_do_jump())
+      return CoulombSolver<dim>(its_iteration, its_settings)
+        .solve(search.u, search.state, search.progress);
+    return NewtonFinish<dim>(
+             its_iteration,
+             [this]() -> NewtonSolver<dim> & { return newton_with_levels(); },
+             longest_end)
+      .solve(search.u, search.state, its_settings, search.progress);
+  }
+
+
+
+  template <int dim>
+  SolverReport
+  SafeguardedSolver<dim>::newton_method(const Search &search)
+  {
+    CoulombSettings its_settings = later_settings(search.accuracy);
+    its_settings.limits.patience = 0;
+    if (const std::optional<SolverReport> report = condensed_if_cheap(
+          search, Condensed::By::newton_solver, its_settings))
+      return *report;
+
+    SolverReport report = solve_by_newton(newton_with_levels(),
+                                          search.u,
+                                          search.state,
+                                          its_settings,
+                                          search.progress);
     report.solver_memory += iteration.leading_smoother().memory_consumption();
     return report;
   }
@@ -601,7 +638,11 @@ namespace Friction
         best               = search.u;
         best_state         = search.state;
       }
-    add_attempt(all, name, report);
+    add_attempt(
+      all,
+      name +
+        (report.finished_by_newton ? ", finished by Newton's method," : ""),
+      report);
   }
 
 
@@ -640,8 +681,7 @@ namespace Friction
     if (!all.attempts.empty())
       start_anew();
     attempt(algorithm, [&]() {
-      return CoulombSolver<dim>(solver.iteration, first)
-        .solve(search.u, search.state, search.progress);
+      return solver.algorithm_to_the_end(solver.iteration, first, search);
     });
     solver.next_method = Method::algorithm;
   }
@@ -838,6 +878,8 @@ namespace Friction
         if (report.converged && all.attempts.size() == 1)
           {
             report.next_method = solver.next_method;
+            if (report.finished_by_newton)
+              report.attempts = all.attempts;
             return report;
           }
       }

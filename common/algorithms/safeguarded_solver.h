@@ -3,6 +3,7 @@
 
 #include <common/algorithms/condensed_solver.h>
 #include <common/algorithms/coulomb_solver.h>
+#include <common/algorithms/newton_finish.h>
 #include <common/algorithms/newton_solver.h>
 #include <common/iteration/aggregate_correction.h>
 #include <common/iteration/algebraic_correction.h>
@@ -199,6 +200,14 @@ namespace Friction
     SolverReport algebraic_corrections(const Search &search);
 
     SolverReport mixed_algorithm_2(const Search &search);
+
+    // For the whole body, with levels.
+    NewtonSolver<dim> &newton_with_levels();
+
+    // By the algorithm of the settings, and by Newton's method at the end.
+    SolverReport algorithm_to_the_end(MonotoneMultigrid<dim> &its_iteration,
+                                      const CoulombSettings  &its_settings,
+                                      const Search           &search);
 
     SolverReport newton_method(const Search &search);
 

@@ -57,6 +57,9 @@ namespace Friction
     /// what the outer iteration of Algorithm 2 adds to it.
     double algebraic_error = 0;
 
+    /// Whether the last cycles are Newton's method's, see NewtonFinish.
+    bool finished_by_newton = false;
+
     /// What SafeguardedSolver has tried, in this order; empty if the algorithm
     /// of the settings was tried first and was enough.
     std::vector<SolverAttempt> attempts;

@@ -69,7 +69,9 @@ namespace Friction
     equations = &the_equations;
     levels.update(equations->truncation());
     relaxation.update(equations->truncation(), equations->slopes());
-    strip.update(equations->truncation(), equations->slopes(), n_layers);
+    strip.update(equations->truncation(),
+                 equations->slopes(),
+                 problem.effective_coefficient() > 1. ? n_layers : 0);
   }
 
 
@@ -152,6 +154,7 @@ namespace Friction
       {
         // What there is of a step may do.
         outcome.converged = false;
+        outcome.accuracy  = control.last_value() / size;
       }
     memory.release_unused_memory();
     copy_owned(v, x);
