@@ -1,4 +1,4 @@
-#include <common/algorithms/safeguarded_solver.h>
+#include <common/algorithms/attempts.h>
 #include <common/parallel/reductions.h>
 #include <common/parallel/run_clock.h>
 #include <common/printable.h>
@@ -8,28 +8,11 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <sstream>
 
 namespace Friction
 {
   namespace
   {
-    // Cycles that a method may take until it has to get somewhere. Where bounds
-    // of friction react strongly to the displacement, methods with those of the
-    // moment go to and fro from the beginning.
-    constexpr unsigned int patience = 50, short_patience = 8;
-
-    // Where friction is much, more cycles than that are better saved by
-    // Newton's method: on this mesh, and on the next one if this took a few
-    // less.
-    constexpr unsigned int many_cycles = 25, many_for_the_next = 20;
-
-    // Where materials jump, there are levels made of the matrix to try.
-    // If these take that many cycles, the next mesh does not begin with them.
-    constexpr unsigned int jump_patience = 10, too_many_for_the_next = 100;
-
-
-
     // How many cycles contact nodes alone may take the time of: where a
     // material is nearly incompressible, which makes cycles several times as
     // dear, and is solved to a given tolerance; and where fewer will do, or are
@@ -58,82 +41,6 @@ namespace Friction
     // How many times as long as has been expected it may take if more nodes
     // turn out to touch.
     constexpr double allowed_growth = 3;
-
-
-
-    constexpr const char *on_contact_nodes = " on contact nodes alone";
-
-
-
-    // A user who chooses other parts wants to see them work.
-    bool
-    has_defaults(const SolverSettings &settings)
-    {
-      return settings.algorithm != Algorithm::fixed_point &&
-        settings.coarse_correction == CoarseCorrection::truncated;
-    }
-
-
-
-    // Without friction, and with given bounds, there is nothing to iterate but
-    // the multigrid method.
-    template <int dim>
-    std::string
-    name_of(const DiscreteProblem<dim> &problem, const SolverSettings &settings)
-    {
-      if (!problem.has_coulomb_friction())
-        return "the multigrid iteration";
-      return settings.algorithm == Algorithm::fixed_point ? "Algorithm 2"
-                                                          : "Algorithm 3";
-    }
-
-
-
-    // For a solution on the way to the one that is wanted.
-    void
-    ease(CoulombSettings &settings, const double accuracy)
-    {
-      if (accuracy > 0.)
-        {
-          settings.limits.inner_tolerance =
-            std::max(accuracy, settings.limits.inner_tolerance);
-          settings.outer_tolerance =
-            std::max(accuracy, settings.outer_tolerance);
-          settings.certificate_tolerance =
-            std::numeric_limits<double>::infinity();
-        }
-    }
-
-
-
-    bool
-    is_finite(const VectorType   &u,
-              const ContactState &state,
-              const MPI_Comm      comm)
-    {
-      bool infinite = false;
-      for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
-        infinite = infinite || !std::isfinite(u.local_element(i));
-      for (unsigned int p = 0; p < state.size(); ++p)
-        infinite = infinite || !std::isfinite(state.normal_force(p));
-      return !true_on_any_process(infinite, comm);
-    }
-
-
-
-    // Notes what has been tried, and all the cycles that it took.
-    void
-    add_attempt(SolverReport       &all,
-                const std::string  &name,
-                const SolverReport &outcome)
-    {
-      all.attempts.push_back({name,
-                              static_cast<unsigned int>(outcome.cycles.size()),
-                              outcome.converged,
-                              outcome.certificate.largest()});
-      all.cycles.insert(
-        all.cycles.end(), outcome.cycles.begin(), outcome.cycles.end());
-    }
   } // namespace
 
 
@@ -169,18 +76,56 @@ namespace Friction
 
 
 
-  // What all attempts after the first have in common. They end by increments,
-  // and not by an estimate of the error.
+  template <int dim>
+  bool
+  SafeguardedSolver<dim>::has_defaults() const
+  {
+    return settings.algorithm != Algorithm::fixed_point &&
+      settings.coarse_correction == CoarseCorrection::truncated;
+  }
+
+
+
+  template <int dim>
+  CoulombSettings
+  SafeguardedSolver<dim>::first_settings(const double accuracy) const
+  {
+    CoulombSettings result(settings);
+    if (accuracy > 0.)
+      {
+        result.limits.inner_tolerance =
+          std::max(accuracy, result.limits.inner_tolerance);
+        result.outer_tolerance = std::max(accuracy, result.outer_tolerance);
+        result.certificate_tolerance = std::numeric_limits<double>::infinity();
+      }
+    return result;
+  }
+
+
+
   template <int dim>
   CoulombSettings
   SafeguardedSolver<dim>::later_settings(const double accuracy) const
   {
-    CoulombSettings result(settings);
-    ease(result, accuracy);
+    CoulombSettings result         = first_settings(accuracy);
     result.limits.energy_tolerance = 0.;
     result.limits.patience         = patience;
     result.limits.budget           = budget;
     return result;
+  }
+
+
+
+  template <int dim>
+  bool
+  SafeguardedSolver<dim>::is_finite(const Search &search) const
+  {
+    bool infinite = false;
+    for (unsigned int i = 0; i < search.u.locally_owned_size(); ++i)
+      infinite = infinite || !std::isfinite(search.u.local_element(i));
+    for (unsigned int p = 0; p < search.state.size(); ++p)
+      infinite = infinite || !std::isfinite(search.state.normal_force(p));
+    return !true_on_any_process(infinite, problem.communicator());
   }
 
 
@@ -213,7 +158,7 @@ namespace Friction
   bool
   SafeguardedSolver<dim>::coarse_cells_may_be_to_blame()
   {
-    return has_defaults(settings) && !much_friction() &&
+    return has_defaults() && !much_friction() &&
       levels.hierarchy().n_levels() > 1 &&
       (mostly_lines_in_space() || materials_do_jump());
   }
@@ -224,8 +169,7 @@ namespace Friction
   bool
   SafeguardedSolver<dim>::may_condense() const
   {
-    return settings.condensation != CondensationUse::never &&
-      has_defaults(settings);
+    return settings.condensation != CondensationUse::never && has_defaults();
   }
 
 
@@ -395,7 +339,7 @@ namespace Friction
     if (report.inner_converged || budget->is_spent())
       return report;
 
-    if (!is_finite(search.u, search.state, problem.communicator()))
+    if (!is_finite(search))
       {
         search.u     = start;
         search.state = start_state;
@@ -439,7 +383,7 @@ namespace Friction
     const CoulombSettings  &its_settings,
     const Search           &search)
   {
-    if (!has_defaults(settings) || settings.nearly_incompressible ||
+    if (!has_defaults() || settings.nearly_incompressible ||
         materials_do_jump())
       return CoulombSolver<dim>(its_iteration, its_settings)
         .solve(search.u, search.state, search.progress);
@@ -527,401 +471,6 @@ namespace Friction
 
 
 
-  // One call of solve(): what has been tried, and in which order.
-  template <int dim>
-  class SafeguardedSolver<dim>::Attempts
-  {
-  public:
-    Attempts(SafeguardedSolver<dim> &solver, const Search &search);
-
-    SolverReport run();
-
-  private:
-    SafeguardedSolver<dim> &solver;
-    const Search           &search;
-    DiscreteProblem<dim>   &problem;
-    const MPI_Comm          comm;
-    const bool              coulomb;
-    const std::string       algorithm; // its name
-    const Method            begin_with;
-    const VectorType        initial;
-    const ContactState      initial_state;
-
-    // Of the last attempt, and of all.
-    SolverReport report, all;
-
-    // If nothing succeeds, what violates the law least is returned.
-    double       smallest_violation = std::numeric_limits<double>::infinity();
-    VectorType   best;
-    ContactState best_state;
-
-    // What has been tried.
-    bool is_condensed = false, is_aggregate = false, is_algebraic = false,
-         is_newton = false, is_continued = false, is_mixed = false;
-
-    // Whether there is anything left to do and to try it with; notes that it is
-    // being tried.
-    bool begin(bool &is_tried, const bool is_last = false);
-
-    template <typename MethodOfSolver>
-    void attempt(const std::string &name, const MethodOfSolver &method);
-
-    void start_anew();
-
-    // A step of Newton's method may have gone into the obstacle; phases that
-    // Algorithm 3 alone has begun to find are a good guess.
-    void start_anew_unless_guess_is_better();
-
-    void try_algorithm(
-      const unsigned int its_patience,
-      const unsigned int worthwhile = std::numeric_limits<unsigned int>::max());
-
-    void try_contact_nodes_alone();
-    void try_aggregates();
-    void try_algebraic_corrections();
-    void try_newton();
-    void try_continuation(const bool is_last);
-    void try_mixed_algorithm_2(const bool is_last);
-
-    // Newton's method and those that follow it are for contact nodes alone
-    // where that is cheap.
-    std::string where_newton_is() const;
-
-    void try_what_knows_the_law();
-    void try_what_has_solved_the_mesh_before();
-  };
-
-
-
-  template <int dim>
-  SafeguardedSolver<dim>::Attempts::Attempts(SafeguardedSolver<dim> &solver,
-                                             const Search           &search)
-    : solver(solver)
-    , search(search)
-    , problem(solver.problem)
-    , comm(problem.communicator())
-    , coulomb(problem.has_coulomb_friction())
-    , algorithm(name_of(problem, solver.settings))
-    , begin_with(solver.next_method)
-    , initial(search.u)
-    , initial_state(search.state)
-    , best(search.u)
-    , best_state(search.state)
-  {}
-
-
-
-  template <int dim>
-  bool
-  SafeguardedSolver<dim>::Attempts::begin(bool &is_tried, const bool is_last)
-  {
-    if (report.converged || is_tried || !solver.budget->begin_attempt(is_last))
-      return false;
-    is_tried = true;
-    return true;
-  }
-
-
-
-  template <int dim>
-  template <typename MethodOfSolver>
-  void
-  SafeguardedSolver<dim>::Attempts::attempt(const std::string    &name,
-                                            const MethodOfSolver &method)
-  {
-    report         = method();
-    const double v = report.certificate.largest();
-    if (!report.converged && v < smallest_violation &&
-        is_finite(search.u, search.state, comm))
-      {
-        smallest_violation = v;
-        best               = search.u;
-        best_state         = search.state;
-      }
-    add_attempt(
-      all,
-      name +
-        (report.finished_by_newton ? ", finished by Newton's method," : ""),
-      report);
-  }
-
-
-
-  template <int dim>
-  void
-  SafeguardedSolver<dim>::Attempts::start_anew()
-  {
-    search.u     = initial;
-    search.state = initial_state;
-  }
-
-
-
-  template <int dim>
-  void
-  SafeguardedSolver<dim>::Attempts::start_anew_unless_guess_is_better()
-  {
-    if (all.attempts.size() > 1 || is_newton ||
-        !is_finite(search.u, search.state, comm))
-      start_anew();
-  }
-
-
-
-  template <int dim>
-  void
-  SafeguardedSolver<dim>::Attempts::try_algorithm(
-    const unsigned int its_patience, const unsigned int worthwhile)
-  {
-    CoulombSettings first(solver.settings);
-    ease(first, search.accuracy);
-    first.limits.patience          = its_patience;
-    first.limits.worthwhile_cycles = worthwhile;
-    first.limits.budget            = solver.budget;
-    if (!all.attempts.empty())
-      start_anew();
-    attempt(algorithm, [&]() {
-      return solver.algorithm_to_the_end(solver.iteration, first, search);
-    });
-    solver.next_method = Method::algorithm;
-  }
-
-
-
-  template <int dim>
-  void
-  SafeguardedSolver<dim>::Attempts::try_contact_nodes_alone()
-  {
-    const bool others_have_failed =
-      !all.attempts.empty() || begin_with == Method::contact_nodes;
-    if (report.converged || is_condensed ||
-        !solver.contact_nodes_alone_are_better(search, others_have_failed) ||
-        !begin(is_condensed))
-      return;
-    start_anew_unless_guess_is_better();
-    attempt((coulomb ? algorithm : "the iteration") + on_contact_nodes,
-            [&]() { return solver.contact_nodes_alone(search); });
-    if (report.converged && others_have_failed)
-      solver.next_method = Method::contact_nodes;
-  }
-
-
-
-  template <int dim>
-  void
-  SafeguardedSolver<dim>::Attempts::try_aggregates()
-  {
-    if (!begin(is_aggregate))
-      return;
-    start_anew();
-    attempt(algorithm + " with levels made of the matrix",
-            [&]() { return solver.aggregate_corrections(search); });
-    solver.aggregates_have_failed = !report.converged;
-    if (report.converged)
-      solver.next_method = report.cycles.size() > too_many_for_the_next
-        ? Method::algorithm
-        : Method::aggregates;
-  }
-
-
-
-  template <int dim>
-  void
-  SafeguardedSolver<dim>::Attempts::try_algebraic_corrections()
-  {
-    if (!begin(is_algebraic))
-      return;
-    start_anew_unless_guess_is_better();
-    attempt(algorithm + " with algebraic corrections",
-            [&]() { return solver.algebraic_corrections(search); });
-    if (report.converged)
-      solver.next_method = Method::algebraic;
-  }
-
-
-
-  template <int dim>
-  std::string
-  SafeguardedSolver<dim>::Attempts::where_newton_is() const
-  {
-    return solver.newton_is_for_contact_nodes_alone(search) ? on_contact_nodes
-                                                            : "";
-  }
-
-
-
-  template <int dim>
-  void
-  SafeguardedSolver<dim>::Attempts::try_newton()
-  {
-    if (!begin(is_newton))
-      return;
-    start_anew();
-    attempt("Newton's method" + where_newton_is(),
-            [&]() { return solver.newton_method(search); });
-    if (report.converged)
-      solver.next_method = Method::newton;
-  }
-
-
-
-  template <int dim>
-  void
-  SafeguardedSolver<dim>::Attempts::try_continuation(const bool is_last)
-  {
-    if (!coulomb || !begin(is_continued, is_last))
-      return;
-    start_anew();
-    const std::string where  = where_newton_is();
-    double            solved = 0;
-    attempt("", [&]() { return solver.continuation(search, solved); });
-    std::ostringstream text;
-    text << "continuation from less friction" << where
-         << ", up to the coefficient " << solved << ',';
-    all.attempts.back().name = text.str();
-    if (report.converged)
-      solver.next_method = Method::newton;
-  }
-
-
-
-  template <int dim>
-  void
-  SafeguardedSolver<dim>::Attempts::try_mixed_algorithm_2(const bool is_last)
-  {
-    if (!coulomb || !begin(is_mixed, is_last))
-      return;
-    search.u     = best;
-    search.state = best_state;
-    attempt("Algorithm 2 with mixed normal forces" + where_newton_is(),
-            [&]() { return solver.mixed_algorithm_2(search); });
-  }
-
-
-
-  // What fails on contact nodes alone does not fail for want of good levels.
-  template <int dim>
-  void
-  SafeguardedSolver<dim>::Attempts::try_what_knows_the_law()
-  {
-    if (report.converged || !is_condensed ||
-        !solver.newton_is_for_contact_nodes_alone(search))
-      return;
-    try_newton();
-    try_continuation(/*is_last =*/false);
-    try_mixed_algorithm_2(/*is_last =*/false);
-  }
-
-
-
-  // It is likely to solve this one.
-  template <int dim>
-  void
-  SafeguardedSolver<dim>::Attempts::try_what_has_solved_the_mesh_before()
-  {
-    const bool much_friction = solver.much_friction();
-    if (report.converged)
-      return;
-    if (begin_with == Method::newton && much_friction)
-      try_newton();
-    else if (begin_with == Method::aggregates &&
-             has_defaults(solver.settings) && !much_friction)
-      try_aggregates();
-    else if (begin_with == Method::algebraic ||
-             (begin_with == Method::contact_nodes && !is_condensed &&
-              !much_friction))
-      {
-        // Much dearer, so that others may try once what they can do on this
-        // mesh.
-        if (!solver.aggregates_have_failed &&
-            solver.coarse_cells_may_be_to_blame())
-          try_aggregates();
-        try_algebraic_corrections();
-      }
-  }
-
-
-
-  template <int dim>
-  SolverReport
-  SafeguardedSolver<dim>::Attempts::run()
-  {
-    const SolverSettings &settings      = solver.settings;
-    const bool            much_friction = solver.much_friction();
-    const PhaseCosts      before        = phase_costs(comm);
-
-    // Here it is known beforehand what coarse levels are worth.
-    if (begin_with == Method::newton &&
-        solver.newton_is_for_contact_nodes_alone(search))
-      try_newton();
-    try_contact_nodes_alone();
-    try_what_knows_the_law();
-    try_what_has_solved_the_mesh_before();
-
-    // Whether there is something else to try soon.
-    const bool may_aggregate = !report.converged && !is_aggregate &&
-      solver.coarse_cells_may_be_to_blame();
-    if (!report.converged)
-      {
-        solver.budget->begin_attempt();
-        if (much_friction && has_defaults(settings) && !is_newton)
-          try_algorithm(short_patience, many_cycles);
-        else if (much_friction)
-          try_algorithm(short_patience);
-        else if (may_aggregate)
-          try_algorithm(jump_patience, many_cycles);
-        else
-          try_algorithm(patience);
-        if (report.converged && !is_newton && has_defaults(settings) &&
-            much_friction && report.cycles.size() > many_for_the_next)
-          solver.next_method = Method::newton;
-        if (report.converged && all.attempts.size() == 1)
-          {
-            report.next_method = solver.next_method;
-            if (report.finished_by_newton)
-              report.attempts = all.attempts;
-            return report;
-          }
-      }
-
-    // Without much friction hardly anything but coarse levels can be to blame;
-    // but not if only the outer iteration of Algorithm 2 has failed.
-    const bool outer_failure = coulomb && report.inner_converged &&
-      settings.algorithm == Algorithm::fixed_point;
-    if (may_aggregate)
-      try_aggregates();
-    if (!outer_failure)
-      {
-        try_contact_nodes_alone();
-        try_what_knows_the_law();
-      }
-    // It has not had much time.
-    if (!report.converged && may_aggregate && solver.budget->begin_attempt())
-      try_algorithm(patience);
-    if (!outer_failure && !much_friction)
-      try_algebraic_corrections();
-    try_newton();
-    try_continuation(/*is_last =*/true);
-    try_algebraic_corrections();
-    try_mixed_algorithm_2(/*is_last =*/true);
-
-    // What is reported of a failure is what is returned, and not the end of an
-    // attempt that has been thrown away.
-    if (!report.converged)
-      {
-        search.u     = best;
-        search.state = best_state;
-        certify(report, solver.iteration.functional(), search.u, search.state);
-      }
-    report.cycles      = all.cycles;
-    report.attempts    = all.attempts;
-    report.costs       = phase_costs(comm) - before;
-    report.next_method = solver.next_method;
-    return report;
-  }
-
-
-
   template <int dim>
   bool
   SafeguardedSolver<dim>::begins_with_contact_nodes_alone(const Search &search)
@@ -958,9 +507,8 @@ namespace Friction
     const Search   search{u, state, progress, accuracy};
     if (settings.safeguards)
       return Attempts(*this, search).run();
-    CoulombSettings only(settings);
-    ease(only, accuracy);
-    return CoulombSolver<dim>(iteration, only).solve(u, state, progress);
+    return CoulombSolver<dim>(iteration, first_settings(accuracy))
+      .solve(u, state, progress);
   }
 
 

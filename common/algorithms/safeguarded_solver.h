@@ -29,7 +29,8 @@ namespace Friction
    *    it has to show soon that it gets somewhere. What fails there does not
    *    fail for want of good levels, so that what knows the law is tried next:
    *    6., 7. and 9., on contact nodes alone as well;
-   * 2. the algorithm of the settings, by default Algorithm 3. With much
+   * 2. the algorithm of the settings, by default Algorithm 3, here and in 1.
+   *    and 3. with Newton's method at its end, see NewtonFinish. With much
    *    friction, or where materials jump, it has to show soon that it gets
    *    somewhere;
    * 3. the algorithm of the settings with AggregateCorrection, where there is
@@ -153,13 +154,28 @@ namespace Friction
       const double    accuracy; // as in solve()
     };
 
-    // In which order.
+    // In which order: attempts.h.
     class Attempts;
+
+    // Cycles that a method may take until it has to get somewhere. Where bounds
+    // of friction react strongly to the displacement, methods with those of the
+    // moment go to and fro from the beginning.
+    static constexpr unsigned int patience = 50, short_patience = 8;
 
     // The law is to blame if something fails.
     bool much_friction() const;
 
+    // A user who chooses other parts wants to see them work.
+    bool has_defaults() const;
+
+    // Those of the user, for a solution of this accuracy.
+    CoulombSettings first_settings(const double accuracy) const;
+
+    // What all attempts after the first have in common. They end by increments,
+    // and not by an estimate of the error.
     CoulombSettings later_settings(const double accuracy) const;
+
+    bool is_finite(const Search &search) const;
 
     bool materials_do_jump();
 
