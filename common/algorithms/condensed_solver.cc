@@ -27,8 +27,9 @@ namespace Friction
     template <int dim>
     constexpr types::global_dof_index largest = (dim == 2 ? 60000 : 20000);
 
-    // Cycles that Newton's method may save once phases have settled: a step of
-    // it takes as long as a cycle.
+    // Newton's method, of which a step takes as long as a cycle, takes over
+    // once phases have settled if Algorithm 3 would go on for more cycles than
+    // this.
     constexpr unsigned int longest_dense_end = 4;
 
     // The certificate of a solution, as a part of the tolerance, with which
@@ -420,7 +421,9 @@ namespace Friction
             x.u     = start;
             x.state = start_state;
           }
+        const bool by_newton = report.finished_by_newton;
         report = solve_in_zone(functional, x, method, limits, progress);
+        report.finished_by_newton = report.finished_by_newton || by_newton;
         cycles.insert(cycles.end(), report.cycles.begin(), report.cycles.end());
         if (!grow_zone(x))
           break;
@@ -484,7 +487,8 @@ namespace Friction
 
         // One process solves for all of them, so that they cannot disagree, and
         // all pay for it.
-        const std::vector<CycleInfo> earlier = report.cycles;
+        const std::vector<CycleInfo> earlier   = report.cycles;
+        const bool                   by_newton = report.finished_by_newton;
         {
           const PhaseScope phase(comm, SolverPhase::coarsest);
           if (is_first)
@@ -515,6 +519,7 @@ namespace Friction
           cycle.energy += report.energy - energy_on_contact_nodes;
         report.cycles.insert(
           report.cycles.begin(), earlier.begin(), earlier.end());
+        report.finished_by_newton = report.finished_by_newton || by_newton;
         // What is in the obstacle outside the zone is no matter of passes.
         if (report.converged && zone->misses(x.u, x.state))
           return report;

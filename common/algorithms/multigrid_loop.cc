@@ -212,14 +212,16 @@ namespace Friction
           }
         const double tolerance =
           std::max(limits.inner_tolerance, limits.energy_tolerance / size);
+        if (cycle >= limits.maximum_cycles ||
+            (limits.budget && limits.budget->is_spent()))
+          break;
         if (limits.finish && result.phases_have_settled() &&
             limits.finish(cycle, result.cycles_until(tolerance)))
           {
             result.converged = true;
             break;
           }
-        if (cycle >= limits.maximum_cycles ||
-            (limits.budget && limits.budget->is_spent()) ||
+        if ((limits.budget && limits.budget->is_spent()) ||
             (limits.patience > 0 &&
              result.stalls(tolerance, worthwhile, limits.patience)))
           break;

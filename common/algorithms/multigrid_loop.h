@@ -102,12 +102,18 @@ namespace Friction
     unsigned int patience          = 0;
     unsigned int worthwhile_cycles = std::numeric_limits<unsigned int>::max();
 
-    /// Asked after each cycle once phases have settled; is told the number of
-    /// cycles done, and how many more there would be at the pace of the last
-    /// ones. What it says is whether the iterate is the solution now: it may
-    /// have made it so, and must leave it as it was if not. Empty if there is
-    /// nobody to ask.
+    /// Called after each cycle but the last one, once phases have settled, with
+    /// the number of cycles done and how many more there would be at the pace
+    /// of the last ones. Returns whether it has made the iterate the solution;
+    /// if not, it has left the iterate as it was. May be empty.
     std::function<bool(const unsigned int, const double)> finish;
+
+    /// For Newton's method as the end of another one, whose phases are thought
+    /// to be right: a linear problem is given so many iterations, and the
+    /// method ends with the first one whose residual has not come down to a
+    /// hundredth then, or with a step that has to be halved more than once;
+    /// zero: no such limits.
+    unsigned int iterations_per_problem = 0;
 
     /// Ends when these are spent; null for no such limit.
     std::shared_ptr<CycleBudget> budget;

@@ -21,9 +21,11 @@ namespace Friction
    *
    * If it is the coarse correction that is slow, Newton's linear problems are
    * slow, too: a first one that takes more than five iterations is the last
-   * one. A step that has to be halved more than once tells that phases are not
-   * what they will be. Then Algorithm 3 goes on as if nothing had happened, and
-   * Newton's method has another try after as many cycles again.
+   * one, for good. A step that has to be halved more than once tells that
+   * phases are not what they will be; and half of the cycles that would be left
+   * are the most that Newton's method may take, or twelve. Where it ends like
+   * this, Algorithm 3 goes on from its own iterate, and Newton's method has
+   * another try after as many cycles again.
    */
   template <int dim>
   class NewtonFinish
@@ -42,7 +44,7 @@ namespace Friction
 
     /** As CoulombSolver::solve(); collective. Algorithm 2, and problems without
      * Coulomb's friction, are left to that. Cycles of the report are those of
-     * both, see NewtonSolver::solve(). */
+     * both in the order in which they were made, see NewtonSolver::solve(). */
     SolverReport solve(VectorType            &u,
                        ContactState          &state,
                        const CoulombSettings &settings,

@@ -128,8 +128,8 @@ namespace Friction
         if (limits.budget)
           most = std::min(most, limits.budget->cycles_left());
         typename NewtonStep<dim>::Outcome linear;
-        if (limits.patience > 0)
-          most = std::min(most, limits.patience);
+        if (limits.iterations_per_problem > 0)
+          most = std::min(most, limits.iterations_per_problem);
         if (sum_over_processes(dot_owned(rhs, rhs), comm) > 0.)
           {
             linear = linear_solver.solve(unknown, rhs, forcing, most);
@@ -195,8 +195,8 @@ namespace Friction
         // problem, and in three dimensions by its square.
         const double left =
           std::max(linear.accuracy, dim == 3 ? increment : 0.) * increment;
-        const bool settled =
-          length == 1. && linear.converged && same_phases(old_laws);
+        const bool settled = length == 1. &&
+          linear.accuracy <= largest_forcing && same_phases(old_laws);
         result.algebraic_error = norm * left;
         if (settled &&
             (left <= limits.inner_tolerance ||
@@ -207,7 +207,7 @@ namespace Friction
           }
         if (result.cycles.size() >= limits.maximum_cycles ||
             (limits.budget && limits.budget->is_spent()) ||
-            (limits.patience > 0 &&
+            (limits.iterations_per_problem > 0 &&
              (linear.accuracy > largest_forcing || length < .5)))
           break;
         const double ratio = before > 0 ? wrong / before : 1.;

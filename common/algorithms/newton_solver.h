@@ -40,11 +40,7 @@ namespace Friction
      * @param state  the phases and normal forces of the guess, with which the
      *               first step reckons, and those of the solution.
      * @param limits Of these, one cycle is one iteration for linear
-     *               equations, of which a dense factorisation takes one. With
-     *               patience, which says that the phases of the guess are
-     *               thought to be right, a linear problem that takes more
-     *               iterations than that is the last one, and so is a step that
-     *               has to be halved more than once.
+     *               equations, of which a dense factorisation takes one.
      * @return a record per iteration, with the increment of the step of
      *         Newton's method that it belongs to.
      */

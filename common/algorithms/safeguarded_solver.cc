@@ -33,7 +33,8 @@ namespace Friction
 
 
 
-    // Cycles that Newton's method may save once phases have settled.
+    // Newton's method takes over once phases have settled if Algorithm 3 would
+    // go on for more cycles than this.
     constexpr unsigned int longest_end = 20;
 
 
@@ -383,6 +384,8 @@ namespace Friction
     const CoulombSettings  &its_settings,
     const Search           &search)
   {
+    // With lines in space the levels of the mesh may be good ones, also where
+    // those of the matrix are tried.
     if (!has_defaults() || settings.nearly_incompressible ||
         materials_do_jump())
       return CoulombSolver<dim>(its_iteration, its_settings)
@@ -400,8 +403,7 @@ namespace Friction
   SolverReport
   SafeguardedSolver<dim>::newton_method(const Search &search)
   {
-    CoulombSettings its_settings = later_settings(search.accuracy);
-    its_settings.limits.patience = 0;
+    const CoulombSettings its_settings = later_settings(search.accuracy);
     if (const std::optional<SolverReport> report = condensed_if_cheap(
           search, Condensed::By::newton_solver, its_settings))
       return *report;

@@ -29,10 +29,11 @@ namespace Friction
    *    it has to show soon that it gets somewhere. What fails there does not
    *    fail for want of good levels, so that what knows the law is tried next:
    *    6., 7. and 9., on contact nodes alone as well;
-   * 2. the algorithm of the settings, by default Algorithm 3, here and in 1.
-   *    and 3. with Newton's method at its end, see NewtonFinish. With much
+   * 2. the algorithm of the settings, by default Algorithm 3. With much
    *    friction, or where materials jump, it has to show soon that it gets
-   *    somewhere;
+   *    somewhere. Unless materials jump or are nearly incompressible, so that
+   *    levels are of little use, Newton's method may be its end, see
+   *    NewtonFinish, and that of 3.; on contact nodes alone always;
    * 3. the algorithm of the settings with AggregateCorrection, where there is
    *    not much friction and materials jump, or most nodes of a body in three
    *    dimensions are in lines of strong couplings: coarse functions do not
@@ -234,7 +235,7 @@ namespace Friction
 
 
   /** What has been tried, and what came of it, in one sentence; empty if the
-   * algorithm of the settings was tried first and was enough. */
+   * algorithm of the settings was tried first and was enough by itself. */
   std::string describe_attempts(const SolverReport &report);
 } // namespace Friction
 

@@ -57,11 +57,12 @@ namespace Friction
     /// what the outer iteration of Algorithm 2 adds to it.
     double algebraic_error = 0;
 
-    /// Whether the last cycles are Newton's method's, see NewtonFinish.
+    /// Whether Newton's method was the end of another one, see NewtonFinish;
+    /// contraction is that of the other one then.
     bool finished_by_newton = false;
 
     /// What SafeguardedSolver has tried, in this order; empty if the algorithm
-    /// of the settings was tried first and was enough.
+    /// of the settings was tried first and was enough by itself.
     std::vector<SolverAttempt> attempts;
 
     /// What the next mesh may begin with, to judge by this one.

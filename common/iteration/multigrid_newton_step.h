@@ -22,9 +22,9 @@ namespace Friction
   class MultigridNewtonStep : public NewtonStep<dim>
   {
   public:
-    /// Layers of the strip along sliding nodes, with a coefficient of friction
-    /// above one; sliding nodes alone will do with less. In three dimensions
-    /// factors of a deep one cost more than they save.
+    /// Layers of the strip along sliding nodes. With a coefficient of friction
+    /// of at most one it has none, and consists of the sliding nodes only. In
+    /// three dimensions factors of a deep strip cost more than they save.
     static constexpr unsigned int n_layers = dim == 2 ? 8 : 2;
 
     /** References are kept.

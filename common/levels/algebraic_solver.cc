@@ -54,7 +54,10 @@ namespace Friction
     else
       // A factorisation may be left of a matrix that nothing else could cope
       // with. A hierarchy is kept.
-      has_factors = false;
+      {
+        factors.clear();
+        has_factors = false;
+      }
   }
 
 
@@ -89,12 +92,12 @@ namespace Friction
         for (const auto i : owned)
           largest = std::max(largest, matrix->diag_element(i));
         largest = Utilities::MPI::max(largest, comm);
-        TrilinosWrappers::SparseMatrix shifted;
-        shifted.copy_from(*matrix);
+        shifted = std::make_unique<TrilinosWrappers::SparseMatrix>();
+        shifted->copy_from(*matrix);
         for (const auto i : owned)
-          shifted.add(i, i, 1e-10 * largest);
-        shifted.compress(VectorOperation::add);
-        AssertThrow(factors.factorize(shifted),
+          shifted->add(i, i, 1e-10 * largest);
+        shifted->compress(VectorOperation::add);
+        AssertThrow(factors.factorize(*shifted),
                     ExcMessage("The matrix is not positive semidefinite."));
       }
     has_factors = true;

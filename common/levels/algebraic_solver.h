@@ -117,8 +117,10 @@ namespace Friction
     const unsigned int                    n_components;
     const TrilinosWrappers::SparseMatrix *matrix = nullptr;
 
-    SparseFactors factors;
-    bool          has_factors = false;
+    // Factors, and the matrix they belong to if that is not the given one.
+    std::unique_ptr<TrilinosWrappers::SparseMatrix> shifted;
+    SparseFactors                                   factors;
+    bool                                            has_factors = false;
 
     std::unique_ptr<TrilinosWrappers::SparseMatrix>    hierarchy_matrix;
     std::unique_ptr<TrilinosWrappers::PreconditionAMG> hierarchy;

@@ -16,7 +16,7 @@ namespace Friction
 
     // Another order than that of the unknowns, found at the first matrix.
     Eigen::SimplicialLLT<Matrix, Eigen::Lower> factors;
-    bool                                       has_order = false;
+    Eigen::Index                               n_entries = 0;
   };
 
 
@@ -75,9 +75,13 @@ namespace Friction
     if (!cholesky)
       cholesky = std::make_unique<Cholesky>();
     const Cholesky::Matrix A = entries_of(matrix);
-    if (!cholesky->has_order)
-      cholesky->factors.analyzePattern(A);
-    cholesky->has_order = true;
+    if (cholesky->n_entries == 0)
+      {
+        cholesky->factors.analyzePattern(A);
+        cholesky->n_entries = A.nonZeros();
+      }
+    Assert(cholesky->n_entries == A.nonZeros(),
+           ExcMessage("The matrix has another pattern than the first one."));
     cholesky->factors.factorize(A);
     if (cholesky->factors.info() != Eigen::Success)
       return false;
@@ -88,6 +92,15 @@ namespace Friction
     const Eigen::VectorXd diagonal =
       cholesky->factors.permutationP() * Eigen::VectorXd(A.diagonal());
     return (pivots.array().square() >= rounding * diagonal.array()).all();
+  }
+
+
+
+  void
+  SparseFactors::clear()
+  {
+    cholesky.reset();
+    by_trilinos.reset();
   }
 
 

@@ -14,10 +14,10 @@ namespace Friction
    * A factorisation of a sparse, symmetric and positive definite matrix.
    *
    * On one process it is Cholesky's, by Eigen, in an order of approximate
-   * minimum degree (Amestoy, Davis and Duff 1996): half the operations of
-   * an LU factorisation without knowledge of the symmetry, and in three
-   * dimensions a quarter of its time. On several processes it is that of
-   * Trilinos, which does all on the first one.
+   * minimum degree (Amestoy, Davis and Duff 1996). In three dimensions it takes
+   * a third of the time of an LU factorisation that does not know of the
+   * symmetry, see doc/benchmark/coarsest.txt. On several processes it is that
+   * of Trilinos, LU on the first one.
    */
   class SparseFactors
   {
@@ -26,13 +26,15 @@ namespace Friction
     ~SparseFactors();
 
     /**
-     * Collective; the matrix is not needed any more afterwards. Later matrices
-     * have the pattern of the first one.
+     * Collective. The matrix is kept by reference. Later ones have its pattern.
      * @return whether the matrix is positive definite, up to rounding (on
      * several processes: whether no pivot is zero); if not, nothing can be
      * solved. The same on all processes.
      */
     bool factorize(const TrilinosWrappers::SparseMatrix &matrix);
+
+    /** Frees the memory of the factors. */
+    void clear();
 
     /** A x = b. Collective. */
     void solve(VectorType &x, const VectorType &b) const;

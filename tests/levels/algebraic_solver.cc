@@ -290,6 +290,52 @@ namespace test_algebraic_solver
 
 
 
+  // Differences of neighbours in a row of nodes: no rounding makes its last
+  // pivot anything but zero.
+  void
+  zero_pivot()
+  {
+    const MPI_Comm     comm  = MPI_COMM_WORLD;
+    const unsigned int n_per = 4,
+                       n     = n_per * Utilities::MPI::n_mpi_processes(comm),
+                       first = n_per * Utilities::MPI::this_mpi_process(comm);
+    IndexSet owned(n);
+    owned.add_range(first, first + n_per);
+    DynamicSparsityPattern pattern(n, n, owned);
+    for (const auto i : owned)
+      for (unsigned int j = (i == 0 ? 0 : i - 1);
+           j < std::min<unsigned int>(n, i + 2);
+           ++j)
+        pattern.add(i, j);
+    TrilinosWrappers::SparseMatrix matrix;
+    matrix.reinit(owned, owned, pattern, comm);
+    for (const auto i : owned)
+      {
+        matrix.set(i, i, i == 0 || i + 1 == n ? 1. : 2.);
+        if (i > 0)
+          matrix.set(i, i - 1, -1.);
+        if (i + 1 < n)
+          matrix.set(i, i + 1, -1.);
+      }
+    matrix.compress(VectorOperation::insert);
+    VectorType x(owned, comm), rhs(x), defect(x);
+    for (const auto i : owned)
+      rhs(i) = i + 1 == n ? 1. - n : 1.;
+    if (Utilities::MPI::this_mpi_process(comm) == 0)
+      output << "a pivot that is zero" << std::endl;
+    AlgebraicSolver solver(CoarsestMethod::direct, 2);
+    solver.initialize(matrix);
+    for (unsigned int k = 0; k < 2; ++k)
+      {
+        solver.solve(x, rhs);
+        matrix.vmult(defect, x);
+        defect -= rhs;
+        check(defect.l2_norm() < 1e-4 * rhs.l2_norm(), "solved all the same");
+      }
+  }
+
+
+
   // One process has all the rows, of a matrix that couples nothing.
   void
   empty_processes()
@@ -340,5 +386,6 @@ TEST(algebraic_solver)
   solve<3>(9);
   singular<2>(50);
   singular<3>(9);
+  zero_pivot();
   empty_processes();
 }
