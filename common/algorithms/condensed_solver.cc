@@ -97,6 +97,7 @@ namespace Friction
     MonotoneMultigrid<dim>      iteration;
     DenseNewtonStep<dim>        newton_step;
     NewtonSolver<dim>           newton;
+    const bool                  may_finish;
 
     SmallSolver(const DiscreteProblem<dim> &problem,
                 const SolverSettings       &settings)
@@ -112,6 +113,7 @@ namespace Friction
                   line_search,
                   settings.smoothing_steps)
       , newton(energy, newton_step)
+      , may_finish(settings.has_default_corrections())
     {}
 
     SolverReport
@@ -121,13 +123,15 @@ namespace Friction
           const CoulombSettings &limits,
           const Progress        &progress)
     {
-      return method == By::newton_solver
-        ? solve_by_newton(newton, u, state, limits, progress)
-        : NewtonFinish<dim>(
-            iteration,
-            [this]() -> NewtonSolver<dim> & { return newton; },
-            longest_dense_end)
-            .solve(u, state, limits, progress);
+      if (method == By::newton_solver)
+        return solve_by_newton(newton, u, state, limits, progress);
+      if (!may_finish)
+        return CoulombSolver<dim>(iteration, limits).solve(u, state, progress);
+      return NewtonFinish<dim>(
+               iteration,
+               [this]() -> NewtonSolver<dim> & { return newton; },
+               longest_dense_end)
+        .solve(u, state, limits, progress);
     }
 
     std::size_t

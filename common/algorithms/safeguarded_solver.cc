@@ -386,7 +386,7 @@ namespace Friction
   {
     // With lines in space the levels of the mesh may be good ones, also where
     // those of the matrix are tried.
-    if (!has_defaults() || settings.nearly_incompressible ||
+    if (!settings.has_default_corrections() || settings.nearly_incompressible ||
         materials_do_jump())
       return CoulombSolver<dim>(its_iteration, its_settings)
         .solve(search.u, search.state, search.progress);

@@ -152,6 +152,17 @@ namespace Friction
     /// Whether the volume of the body, or of a part of it, hardly changes: more
     /// sweeps are wanted then than the levels have otherwise.
     bool nearly_incompressible = false;
+
+    /** Whether corrections are those that a user gets who does not choose any.
+     * Who does wants to see them work. */
+    bool
+    has_default_corrections() const
+    {
+      const SolverSettings defaults;
+      return coarse_correction == defaults.coarse_correction &&
+        truncation == defaults.truncation &&
+        maximum_step_length == defaults.maximum_step_length;
+    }
   };
 
   /** How many smoothing steps a body of this material needs, which is what
