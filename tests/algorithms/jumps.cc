@@ -4,9 +4,9 @@
 // from then on, one attempt each (bodies as small as these would otherwise be
 // solved on contact nodes alone). Its solution is that of AlgebraicCorrection,
 // which has no levels at all. Groups of nodes end between processes, so that
-// several of them need more cycles. The tolerance is what rounding errors leave:
-// those of the forces on a stiff part move it, against nothing but what is soft,
-// by some billionths of the displacement.
+// several of them need more cycles. The tolerance is what rounding errors
+// leave: those of the forces on a stiff part move it, against nothing but what
+// is soft, by some billionths of the displacement.
 
 #include <common/algorithms/nested_iteration.h>
 
