@@ -29,6 +29,17 @@ namespace Friction
 
 
 
+    // How many cycles it takes from the increment @p now to @p tolerance at
+    // this pace per cycle.
+    double
+    cycles_at_pace(const double pace, const double now, const double tolerance)
+    {
+      return pace < 1 ? std::max(0., std::log(tolerance / now) / std::log(pace))
+                      : std::numeric_limits<double>::infinity();
+    }
+
+
+
     // Whether increments are nothing but rounding errors: they are as small,
     // and no longer become smaller. A tolerance below that can only be met so.
     bool
@@ -94,8 +105,7 @@ namespace Friction
     };
     const double now  = smallest(n);
     const double rate = std::pow(now / smallest(n - window), 1. / window);
-    return !(rate < 1) ||
-      std::log(tolerance / now) / std::log(rate) > double(maximum_cycles) - n;
+    return cycles_at_pace(rate, now, tolerance) > double(maximum_cycles) - n;
   }
 
 
@@ -123,8 +133,7 @@ namespace Friction
     const double now = cycles.back().increment;
     const double rate =
       std::pow(now / cycles[n - 1 - window].increment, 1. / window);
-    return rate < 1 ? std::max(0., std::log(tolerance / now) / std::log(rate))
-                    : std::numeric_limits<double>::infinity();
+    return cycles_at_pace(rate, now, tolerance);
   }
 
 
