@@ -45,6 +45,18 @@ namespace Tests
 
 
 
+  /** The largest difference of two displacements, in parts of the largest
+   * component of the second one. Collective. */
+  inline double
+  relative_distance(const VectorType &u, const VectorType &v)
+  {
+    VectorType difference(u);
+    difference -= v;
+    return difference.linfty_norm() / v.linfty_norm();
+  }
+
+
+
   /** The points of all nodes of this process, by node number. */
   template <int dim>
   std::vector<Point<dim>>
