@@ -5,6 +5,8 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <algorithm>
+#include <array>
+#include <vector>
 
 namespace Friction
 {
@@ -81,27 +83,35 @@ namespace Friction
       for (unsigned int d = 0; d < dim * dim; ++d)
         complements[i][d] -= nulls[i][d];
     ghosts.update(reinterpret_cast<double *>(complements.data()), dim * dim);
+    // Row by row: each entry by itself would take longer than its search.
+    std::vector<types::global_dof_index> columns;
+    std::array<std::vector<double>, dim> rows;
     for (unsigned int i = 0; i < B.n_rows(); ++i)
       {
-        const NodeBlock<dim> Mi        = complements[i];
-        bool                 empty_row = true;
+        columns.clear();
+        for (std::vector<double> &row : rows)
+          row.clear();
         for (std::size_t e = B.row_begin(i); e < B.row_end(i); ++e)
           {
-            empty_row            = false;
             const unsigned int j = B.column(e);
             NodeBlock<dim>     block;
             std::copy_n(B.block(e), dim * dim, block.begin());
-            block = times<dim>(times<dim>(Mi, block), complements[j]);
+            block =
+              times<dim>(times<dim>(complements[i], block), complements[j]);
             for (unsigned int c = 0; c < dim; ++c)
-              for (unsigned int r = 0; r < dim; ++r)
-                matrix->set(dof(i, r),
-                            dof(j, c),
-                            block[c * dim + r] +
-                              (i == j ? scale * nulls[i][c * dim + r] : 0.));
+              {
+                columns.push_back(dof(j, c));
+                for (unsigned int r = 0; r < dim; ++r)
+                  rows[r].push_back(
+                    block[c * dim + r] +
+                    (i == j ? scale * nulls[i][c * dim + r] : 0.));
+              }
           }
-        if (empty_row)
-          for (unsigned int r = 0; r < dim; ++r)
+        for (unsigned int r = 0; r < dim; ++r)
+          if (columns.empty())
             matrix->set(dof(i, r), dof(i, r), scale);
+          else
+            matrix->set(dof(i, r), columns, rows[r]);
       }
     matrix->compress(VectorOperation::insert);
 
