@@ -7,6 +7,10 @@
 //   the linearisation says: a step that solves the linearised equations leaves
 //   a violation of second order. This is asked in all phases, with Coulomb's
 //   bound, with a given one, and where slip is prescribed;
+// - the step is that of the semismooth* Newton method of Gfrerer, Mandlmayr,
+//   Outrata and Valdman (2022), which linearises the law as a set: from the
+//   pair it goes to one that fulfils the law, by the resolvent of the law, and
+//   a step ends in the tangent space of the law there;
 // - the stiffnesses of a zone are those of its nodes over the root of their
 //   number in 3D, and over their number in 2D.
 
@@ -146,6 +150,72 @@ namespace test_semismooth_law
 
 
 
+  // By how much a whole step is not one of the semismooth* Newton method: the
+  // pair on the graph of the law that has the same r + c u, and the distance of
+  // the pair after the step from the tangent space there. No derivative of a
+  // projection occurs.
+  template <int dim>
+  double
+  off_tangent_space(const DiscreteProblem<dim> &problem,
+                    const ContactNode<dim>     &node,
+                    const Pair<dim>            &pair,
+                    const Random               &random,
+                    const double                given = 0.)
+  {
+    constexpr double c       = 2.;
+    const bool       coulomb = given == 0.;
+    Pair<dim>        on_graph;
+    on_graph.r[0]      = std::max(0., pair.r[0] + c * (pair.u[0] - node.gap));
+    on_graph.u[0]      = pair.u[0] + (pair.r[0] - on_graph.r[0]) / c;
+    const double bound = friction * (coulomb ? on_graph.r[0] : given);
+    double       size  = 0;
+    for (unsigned int e = 1; e < dim; ++e)
+      size += std::pow(pair.r[e] + c * pair.u[e], 2);
+    size = std::sqrt(size);
+    for (unsigned int e = 1; e < dim; ++e)
+      {
+        const double z = pair.r[e] + c * pair.u[e];
+        on_graph.r[e]  = size > bound ? z * bound / size : z;
+        on_graph.u[e]  = (z - on_graph.r[e]) / c;
+      }
+    const SemismoothLaw<dim> there = law_of(problem, node, c, on_graph, given);
+    double                   wrong = norm<dim>(there.violation);
+
+    const Pair<dim> after = stepped(pair,
+                                    law_of(problem, node, c, pair, given),
+                                    node.n_free_tangents,
+                                    1.,
+                                    random);
+    const auto      add   = [&](const double x) {
+      wrong = std::max(wrong, std::abs(x));
+    };
+    std::array<double, dim> du, dr;
+    double                  slip = 0, along = 0;
+    for (unsigned int e = 0; e < dim; ++e)
+      {
+        du[e] = after.u[e] - on_graph.u[e];
+        dr[e] = after.r[e] - on_graph.r[e];
+        if (e > 0)
+          slip += on_graph.u[e] * on_graph.u[e];
+      }
+    add(on_graph.r[0] > 0 ? du[0] : dr[0]);
+    for (unsigned int e = 1; e < dim; ++e)
+      along += on_graph.u[e] * du[e];
+    for (unsigned int e = 1; e < dim; ++e)
+      if (slip == 0)
+        add(du[e]);
+      else
+        {
+          const double direction = on_graph.u[e] / std::sqrt(slip);
+          add(dr[e] - (coulomb ? friction * direction * dr[0] : 0.) -
+              bound / std::sqrt(slip) *
+                (du[e] - direction * along / std::sqrt(slip)));
+        }
+    return wrong;
+  }
+
+
+
   template <int dim>
   void
   test()
@@ -192,7 +262,7 @@ namespace test_semismooth_law
     // Pairs that violate the law, in all phases.
     const auto check_order =
       [&](Pair<dim> pair, const std::string &what, const double given = 0.) {
-        double largest = 0;
+        double largest = 0, off = 0;
         for (unsigned int i = 0; i < 20; ++i)
           {
             Pair<dim> wrong = pair;
@@ -203,8 +273,13 @@ namespace test_semismooth_law
               }
             largest = std::max(
               largest, second_order(problem, node, wrong, random, given));
+            if (node.n_free_tangents == dim - 1)
+              off = std::max(
+                off, off_tangent_space(problem, node, wrong, random, given));
           }
         check_below(largest, 3e-2, what);
+        if (node.n_free_tangents == dim - 1)
+          check_below(off, 1e-12, "the same as of the semismooth* method");
       };
     check_order(open, "steps of an open node");
     check_order(sticking, "of one that sticks");
