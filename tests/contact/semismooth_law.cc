@@ -8,7 +8,7 @@
 //   a violation of second order. This is asked in all phases, with Coulomb's
 //   bound, with a given one, and where slip is prescribed;
 // - the step is that of the semismooth* Newton method of Gfrerer, Mandlmayr,
-//   Outrata and Valdman (2022), which linearises the law as a set: from the
+//   Outrata and Valdman (2023), which linearises the law as a set: from the
 //   pair it goes to one that fulfils the law, by the resolvent of the law, and
 //   a step ends in the tangent space of the law there;
 // - the stiffnesses of a zone are those of its nodes over the root of their
