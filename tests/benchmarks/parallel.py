@@ -4,9 +4,10 @@
 Usage: parallel.py PROGRAM_2D PROGRAM_3D SCENES_2D SCENES_3D MPIEXEC PART...
 
 Parts: "scenes" runs every scene on 1, 2, 4 and 8 processes, solved to 1e-9, and
-compares the protocols; "speed" compares two processes with one, by phase; "communication"
-counts what is sent per cycle; "largest" solves the largest problems that fit
-into 24 GiB. The results go to the standard output.
+compares the protocols; "speed" compares two processes with one, by phase, and "runs"
+does so for whole runs, by their parts; "communication" counts what is sent per
+cycle; "largest" solves the largest problems that fit into 24 GiB. The results go to
+the standard output.
 """
 import glob
 import os
@@ -30,15 +31,11 @@ environment = dict(
 )
 
 
-def run(dim, scene, n_processes, *entries):
-    """Runs a scene; returns the columns of /levels and the profile of the last
-    level: a dictionary of rows, each with messages, bytes and reductions per
-    cycle, seconds, seconds of waiting; and bytes per dof."""
+def run_whole(dim, scene, n_processes, *entries):
+    """Runs a scene; returns the columns of /levels and what was printed."""
     with tempfile.TemporaryDirectory() as directory:
         command = [program[dim], os.path.join(scenes[dim], scene + ".prm"),
-                   "Output/Directory=" + directory, "Output/Fields=false",
-                   "Solver/Inner tolerance=1e-9",
-                   "Solver/Condensation=where cycles are many",
+                   "Output/Directory=" + directory,
                    "Output/Profile=true", "Output/Verbosity=levels", *entries]
         if n_processes > 1:
             command = [mpiexec, "-np", str(n_processes)] + command
@@ -48,8 +45,19 @@ def run(dim, scene, n_processes, *entries):
             sys.exit(" ".join(command) + "\n" + result.stdout + result.stderr)
         with h5py.File(os.path.join(directory, "history.h5")) as file:
             levels = {key: value[:] for key, value in file["levels"].items()}
+    return levels, result.stdout
+
+
+def run(dim, scene, n_processes, *entries):
+    """Runs a scene without fields; returns the columns of /levels and the profile
+    of the last level: a dictionary of rows, each with messages, bytes and
+    reductions per cycle, seconds, seconds of waiting; and bytes per dof."""
+    levels, output = run_whole(dim, scene, n_processes, "Output/Fields=false",
+                               "Solver/Inner tolerance=1e-9",
+                               "Solver/Condensation=where cycles are many",
+                               *entries)
     profile = {}
-    for line in result.stdout.splitlines():
+    for line in output.splitlines():
         row = re.match(r"         (\D+?) +([\d.]+) +(\d+) +([\d.]+) +([\d.]+)"
                        r" +([\d.]+)$", line)
         if row:
@@ -117,6 +125,37 @@ def speed_part():
         sys.stdout.flush()
 
 
+def runs_part():
+    print("Two processes against one on two cores, whole runs with default output, "
+          "best of\ntwo each, taken in turns; seconds by part.")
+    cases = [
+        (3, "cylinder", ["Refinement/Maximum dofs=400000"]),
+        (2, "hertz", ["Refinement/Strategy=uniform", "Refinement/Levels=7",
+                      "Refinement/Maximum dofs=10000000"]),
+    ]
+    for dim, scene, entries in cases:
+        best = {}
+        for _ in range(2):
+            for n in (1, 2):
+                levels, output = run_whole(dim, scene, n, *entries)
+                parts = {row[1]: float(row[2]) for row in re.finditer(
+                    r"^(\S.*?) +([\d.]+) +[\d.]+%$", output, re.M)}
+                if n not in best or parts["all"] < best[n]["all"]:
+                    best[n] = parts
+        print(f"\n{scene}, {levels['dofs'][-1]} dofs")
+        print("                             one      two    ratio")
+        # deal.II's mesh is one that p4est distributes if there are several
+        # processes.
+        best_but_mesh = {n: parts["all"] - parts["mesh"]
+                         for n, parts in best.items()}
+        for part, one in best[1].items():
+            two = best[2][part]
+            print(f"  {part:22}{one:9.2f}{two:9.2f}{one / max(two, 1e-9):9.2f}")
+        print(f"  {'all but the mesh':22}{best_but_mesh[1]:9.2f}"
+              f"{best_but_mesh[2]:9.2f}"
+              f"{best_but_mesh[1] / best_but_mesh[2]:9.2f}", flush=True)
+
+
 def communication_part():
     print("What the process that sends most sends per cycle, last level of "
           "uniform meshes.\n")
@@ -161,7 +200,7 @@ def largest_part():
               f"{process:9d}", flush=True)
 
 
-parts = {"scenes": scenes_part, "speed": speed_part,
+parts = {"scenes": scenes_part, "speed": speed_part, "runs": runs_part,
          "communication": communication_part, "largest": largest_part}
 for number, part in enumerate(sys.argv[6:]):
     if number > 0:
