@@ -103,10 +103,10 @@ namespace Friction
                                   update_values | update_normal_vectors |
                                     update_JxW_values);
     for (const auto &cell : dof_handler.active_cell_iterators())
-      if (!cell->is_artificial())
+      if (!cell->is_artificial() && cell->at_boundary())
         for (const unsigned int f : cell->face_indices())
           if (const ContactCondition<dim> *const condition =
-                cell->face(f)->at_boundary()
+                cell->at_boundary(f)
                 ? scene.contact_on(cell->face(f)->boundary_id())
                 : nullptr)
             {

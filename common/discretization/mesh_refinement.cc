@@ -3,12 +3,14 @@
 #include <common/parallel/run_clock.h>
 #include <common/scene/mesh_size.h>
 
+#include <deal.II/base/geometry_info.h>
+
 #include <deal.II/distributed/tria.h>
 
-#include <deal.II/lac/vector.h>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 namespace Friction
 {
@@ -67,50 +69,101 @@ namespace Friction
 
     // Takes vectors to the next mesh without p4est. Each cell of the old mesh
     // is still there, refined or not, and is given the values that it had.
+    // Functions are multilinear, and their values those at vertices.
     template <int dim>
     class UndividedTransfer
     {
     public:
       UndividedTransfer(const DoFHandler<dim>           &dofs,
                         const std::vector<VectorType *> &vectors)
-        : on_cell(dofs.get_fe().n_dofs_per_cell())
       {
         const Triangulation<dim> &mesh = dofs.get_triangulation();
         AssertDimension(Utilities::MPI::n_mpi_processes(
                           Compatibility::mpi_communicator(mesh)),
                         1);
+        AssertDimension(dofs.get_fe().n_dofs_per_cell(), n_values);
+        for (unsigned int c = 0; c < n_vertices; ++c)
+          for (unsigned int v = 0; v < n_vertices; ++v)
+            for (unsigned int parent = 0; parent < n_vertices; ++parent)
+              weights[c][v][parent] =
+                GeometryInfo<dim>::d_linear_shape_function(
+                  GeometryInfo<dim>::child_to_cell_coordinates(
+                    GeometryInfo<dim>::unit_cell_vertex(v), c),
+                  parent);
+
         cells.reserve(mesh.n_active_cells());
         values.reserve(std::size_t(mesh.n_active_cells()) * vectors.size() *
-                       on_cell.size());
+                       n_values);
         for (const auto &cell : dofs.active_cell_iterators())
           {
             Assert(!cell->coarsen_flag_set(), ExcNotImplemented());
             cells.push_back(cell);
+            cell->get_dof_indices(indices);
             for (const VectorType *v : vectors)
-              {
-                cell->get_dof_values(*v, on_cell);
-                values.insert(values.end(), on_cell.begin(), on_cell.end());
-              }
+              for (const auto i : indices)
+                values.push_back(v->local_element(i));
           }
       }
 
       void
       interpolate(const std::vector<VectorType *> &vectors)
       {
-        auto value = values.begin();
+        const double *on_cell = values.data();
         for (const auto &cell : cells)
-          for (VectorType *v : vectors)
-            {
-              std::copy_n(value, on_cell.size(), on_cell.begin());
-              value += on_cell.size();
-              cell->set_dof_values_by_interpolation(on_cell, *v);
-            }
+          {
+            if (cell->is_active())
+              {
+                cell->get_dof_indices(indices);
+                for (unsigned int k = 0; k < vectors.size(); ++k)
+                  for (unsigned int i = 0; i < n_values; ++i)
+                    vectors[k]->local_element(indices[i]) =
+                      on_cell[k * n_values + i];
+              }
+            else
+              for (unsigned int c = 0; c < n_vertices; ++c)
+                interpolate_to_child(*cell->child(c), c, on_cell, vectors);
+            on_cell += vectors.size() * n_values;
+          }
       }
 
     private:
+      static constexpr unsigned int n_vertices = 1u << dim;
+      static constexpr unsigned int n_values   = n_vertices * dim;
+
+      // What a vertex of a child takes from those of its parent.
+      std::array<std::array<std::array<double, n_vertices>, n_vertices>,
+                 n_vertices>
+        weights;
+
+      // The cells of the old mesh, and their values: all of the first vector,
+      // then all of the next; vertex by vertex.
       std::vector<typename DoFHandler<dim>::cell_iterator> cells;
       std::vector<double>                                  values;
-      Vector<double>                                       on_cell;
+
+      std::vector<types::global_dof_index> indices =
+        std::vector<types::global_dof_index>(n_values);
+
+      void
+      interpolate_to_child(
+        const typename DoFHandler<dim>::cell_iterator::AccessorType &child,
+        const unsigned int                                           c,
+        const double                                                *on_parent,
+        const std::vector<VectorType *>                             &vectors)
+      {
+        child.get_dof_indices(indices);
+        for (VectorType *vector : vectors)
+          {
+            for (unsigned int v = 0; v < n_vertices; ++v)
+              for (unsigned int d = 0; d < dim; ++d)
+                {
+                  double sum = 0;
+                  for (unsigned int parent = 0; parent < n_vertices; ++parent)
+                    sum += weights[c][v][parent] * on_parent[parent * dim + d];
+                  vector->local_element(indices[v * dim + d]) = sum;
+                }
+            on_parent += n_values;
+          }
+      }
     };
   } // namespace
 

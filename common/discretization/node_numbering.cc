@@ -124,24 +124,35 @@ namespace Friction
       const unsigned int        n_nodes        = owned.n_elements() / dim;
       std::vector<unsigned int> kept;
       std::vector<char>         at_interface(n_nodes, 0);
+      kept.reserve(vertex_dofs.size());
+
+      // deal.II gives a process numbers in a row.
+      Assert(owned.is_contiguous(), ExcInternalError());
+      constexpr unsigned int        elsewhere = numbers::invalid_unsigned_int;
+      const types::global_dof_index first =
+        n_nodes > 0 ? owned.nth_index_in_set(0) : 0;
+      const auto own_node = [&](const types::global_dof_index dof) {
+        return dof >= first && dof < first + owned.n_elements()
+          ? static_cast<unsigned int>(dof - first) / dim
+          : elsewhere;
+      };
+
       for (std::size_t c = 0; c < vertex_dofs.size(); c += nodes_per_cell)
         {
-          unsigned int some_owned = numbers::invalid_unsigned_int;
+          unsigned int some_owned = elsewhere;
           unsigned int n_owned    = 0;
           for (unsigned int v = 0; v < nodes_per_cell; ++v)
-            if (owned.is_element(vertex_dofs[c + v]))
+            if (own_node(vertex_dofs[c + v]) != elsewhere)
               {
-                some_owned = owned.index_within_set(vertex_dofs[c + v]) / dim;
+                some_owned = own_node(vertex_dofs[c + v]);
                 ++n_owned;
               }
           if (n_owned == 0)
             continue;
           for (unsigned int v = 0; v < nodes_per_cell; ++v)
             {
-              kept.push_back(owned.is_element(vertex_dofs[c + v])
-                               ? owned.index_within_set(vertex_dofs[c + v]) /
-                                 dim
-                               : some_owned);
+              const unsigned int node = own_node(vertex_dofs[c + v]);
+              kept.push_back(node != elsewhere ? node : some_owned);
               if (n_owned < nodes_per_cell)
                 at_interface[kept.back()] = 1;
             }
@@ -156,7 +167,7 @@ namespace Friction
       std::vector<types::global_dof_index> numbers(owned.n_elements());
       for (unsigned int i = 0; i < n_nodes; ++i)
         for (unsigned int d = 0; d < dim; ++d)
-          numbers[dim * order[i] + d] = owned.nth_index_in_set(dim * i + d);
+          numbers[dim * order[i] + d] = first + dim * i + d;
       return numbers;
     }
   } // namespace

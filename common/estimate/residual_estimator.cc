@@ -235,7 +235,7 @@ namespace Friction
               const CellValues<dim> values = values_of(cell);
               add_cell(cell, values);
               for (const unsigned int f : cell->face_indices())
-                if (cell->face(f)->at_boundary())
+                if (cell->at_boundary(f))
                   add_boundary_face(cell, values, f);
                 else
                   add_interior_face(cell, values, f);

@@ -32,8 +32,8 @@ namespace Friction
       layouts.push_back(k == last_level && finest_is_leaf_mesh
                           ? constraints.partitioner()
                           : hierarchy.level(k).partitioner());
-    mg_constrained_dofs.initialize(dof_handler);
-    transfer.initialize_constraints(mg_constrained_dofs);
+    // Without MGConstrainedDoFs: truncation holds what is prescribed, and where
+    // a level ends matters to copy_to_mg() alone.
     transfer.build(dof_handler, layouts);
 
     for (unsigned int k = 0; k < hierarchy.n_levels(); ++k)

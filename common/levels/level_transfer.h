@@ -4,7 +4,6 @@
 #include <common/levels/level_hierarchy.h>
 #include <common/parallel/ghost_exchange.h>
 
-#include <deal.II/multigrid/mg_constrained_dofs.h>
 #include <deal.II/multigrid/mg_transfer_matrix_free.h>
 
 #include <vector>
@@ -81,7 +80,6 @@ namespace Friction
 
   private:
     const LevelHierarchy<dim>        &hierarchy;
-    MGConstrainedDoFs                 mg_constrained_dofs;
     MGTransferMatrixFree<dim, double> transfer;
 
     // On a mesh without local refinement the finest level is the leaf mesh,
