@@ -4,6 +4,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace Friction
 {
@@ -69,6 +70,23 @@ namespace Friction
 
 
 
+  template <int dim>
+  auto
+  LeafAssembler<dim>::masters_of(const GlobalNode node) const
+    -> ArrayView<const Master>
+  {
+    if (masters_begin.empty())
+      {
+        const auto its = masters.find(node);
+        return its == masters.end() ? ArrayView<const Master>()
+                                    : make_array_view(its->second);
+      }
+    return {local_masters.data() + masters_begin[node],
+            masters_begin[node + 1] - masters_begin[node]};
+  }
+
+
+
   // Numbers of nodes are those of make_numbers_local(), or still global ones.
   template <int dim>
   void
@@ -78,11 +96,11 @@ namespace Friction
     for (unsigned int v = 0; v < n_vertices; ++v)
       {
         const GlobalNode node = vertex_nodes[cell * n_vertices + v];
-        const auto its = masters.empty() ? masters.end() : masters.find(node);
-        if (its == masters.end())
+        const auto       its  = masters_of(node);
+        if (its.size() == 0)
           shares.push_back({node, v, 1.});
         else
-          for (const auto &master : its->second)
+          for (const Master &master : its)
             shares.push_back({master.first, v, master.second});
       }
   }
@@ -158,14 +176,19 @@ namespace Friction
     };
     for (GlobalNode &node : vertex_nodes)
       node = local(node);
-    std::unordered_map<GlobalNode, Masters> local_masters;
-    for (auto &hanging : masters)
+    masters_begin.assign(constraints->n_nodes() + 1, 0);
+    for (const auto &hanging : masters)
+      masters_begin[local(hanging.first) + 1] = hanging.second.size();
+    std::partial_sum(
+      masters_begin.begin(), masters_begin.end(), masters_begin.begin());
+    local_masters.resize(masters_begin.back());
+    for (const auto &hanging : masters)
       {
-        for (auto &master : hanging.second)
-          master.first = local(master.first);
-        local_masters[local(hanging.first)] = std::move(hanging.second);
+        std::size_t place = masters_begin[local(hanging.first)];
+        for (const Master &master : hanging.second)
+          local_masters[place++] = {local(master.first), master.second};
       }
-    masters.swap(local_masters);
+    masters.clear();
     for (auto *all : {&outgoing, &incoming})
       for (auto &process : *all)
         for (Row &row : process.second)
