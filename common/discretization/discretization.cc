@@ -316,7 +316,7 @@ namespace Friction
   {
     std::vector<double> box(2 * dim, -std::numeric_limits<double>::max());
     for (const auto &cell : mesh.active_cell_iterators())
-      if (cell->is_locally_owned())
+      if (cell->is_locally_owned() && cell->at_boundary())
         for (const unsigned int v : cell->vertex_indices())
           for (unsigned int d = 0; d < dim; ++d)
             {

@@ -1,5 +1,6 @@
 #include <common/compatibility.h>
 #include <common/discretization/mesh_refinement.h>
+#include <common/discretization/multilinear_cell.h>
 #include <common/parallel/run_clock.h>
 #include <common/scene/mesh_size.h>
 
@@ -84,12 +85,9 @@ namespace Friction
         AssertDimension(dofs.get_fe().n_dofs_per_cell(), n_values);
         for (unsigned int c = 0; c < n_vertices; ++c)
           for (unsigned int v = 0; v < n_vertices; ++v)
-            for (unsigned int parent = 0; parent < n_vertices; ++parent)
-              weights[c][v][parent] =
-                GeometryInfo<dim>::d_linear_shape_function(
-                  GeometryInfo<dim>::child_to_cell_coordinates(
-                    GeometryInfo<dim>::unit_cell_vertex(v), c),
-                  parent);
+            weights[c][v] = Multilinear::hat_values<dim>(
+              GeometryInfo<dim>::child_to_cell_coordinates(
+                GeometryInfo<dim>::unit_cell_vertex(v), c));
 
         cells.reserve(mesh.n_active_cells());
         values.reserve(std::size_t(mesh.n_active_cells()) * vectors.size() *
