@@ -34,8 +34,8 @@ namespace Friction
    * are. Where a bound is given (Tresca), the term vanishes, and friction does
    * not ask whether there is contact.
    *
-   * The same step is one of the semismooth* Newton method (Gfrerer and others
-   * 2023), from the pair on the graph of the law that has the same $r+cu$.
+   * A step with all these terms is one of the semismooth* Newton method
+   * (Gfrerer and others 2023), see doc/method.md, section 8.
    *
    * All components are those in the frame of the node, tangential ones only as
    * far as they are free.

@@ -285,7 +285,7 @@ namespace Friction
             // reaction, and will be found in Au - f.
             if (cell->at_boundary())
               for (const unsigned int f : cell->face_indices())
-                if (cell->face(f)->at_boundary())
+                if (cell->at_boundary(f))
                   for (const auto &condition : the_scene.traction_conditions())
                     if (cell->face(f)->boundary_id() == condition.boundary_id)
                       {

@@ -61,8 +61,9 @@ namespace Friction
             if (hanging.is_constrained(dof) &&
                 masters.find(dof / dim) == masters.end())
               for (const auto &entry : *hanging.get_constraint_entries(dof))
-                masters[dof / dim].emplace_back(entry.first / dim,
-                                                entry.second);
+                masters[dof / dim].push_back(
+                  {static_cast<GlobalNode>(entry.first / dim),
+                   static_cast<float>(entry.second)});
           }
     if (Utilities::MPI::n_mpi_processes(communicator) > 1)
       exchange_patterns(dof_handler.locally_owned_dofs());
@@ -70,19 +71,19 @@ namespace Friction
 
 
 
+  // None if the node does not hang.
   template <int dim>
-  auto
+  std::pair<const typename LeafAssembler<dim>::Master *,
+            const typename LeafAssembler<dim>::Master *>
   LeafAssembler<dim>::masters_of(const GlobalNode node) const
-    -> ArrayView<const Master>
   {
-    if (masters_begin.empty())
-      {
-        const auto its = masters.find(node);
-        return its == masters.end() ? ArrayView<const Master>()
-                                    : make_array_view(its->second);
-      }
-    return {local_masters.data() + masters_begin[node],
-            masters_begin[node + 1] - masters_begin[node]};
+    if (constraints != nullptr)
+      return {local_masters.begin(node), local_masters.end(node)};
+    const auto its_masters = masters.find(node);
+    if (its_masters == masters.end())
+      return {nullptr, nullptr};
+    return {its_masters->second.data(),
+            its_masters->second.data() + its_masters->second.size()};
   }
 
 
@@ -95,13 +96,12 @@ namespace Friction
     shares.clear();
     for (unsigned int v = 0; v < n_vertices; ++v)
       {
-        const GlobalNode node = vertex_nodes[cell * n_vertices + v];
-        const auto       its  = masters_of(node);
-        if (its.size() == 0)
+        const GlobalNode node   = vertex_nodes[cell * n_vertices + v];
+        const auto [begin, end] = masters_of(node);
+        if (begin == end)
           shares.push_back({node, v, 1.});
-        else
-          for (const Master &master : its)
-            shares.push_back({master.first, v, master.second});
+        for (const Master *master = begin; master != end; ++master)
+          shares.push_back({master->node, v, master->weight});
       }
   }
 
@@ -176,18 +176,19 @@ namespace Friction
     };
     for (GlobalNode &node : vertex_nodes)
       node = local(node);
-    masters_begin.assign(constraints->n_nodes() + 1, 0);
+    std::vector<unsigned int> starts(constraints->n_nodes() + 1, 0);
     for (const auto &hanging : masters)
-      masters_begin[local(hanging.first) + 1] = hanging.second.size();
-    std::partial_sum(
-      masters_begin.begin(), masters_begin.end(), masters_begin.begin());
-    local_masters.resize(masters_begin.back());
+      starts[local(hanging.first) + 1] = hanging.second.size();
+    std::partial_sum(starts.begin(), starts.end(), starts.begin());
+    std::vector<Master> entries(starts.back());
     for (const auto &hanging : masters)
       {
-        std::size_t place = masters_begin[local(hanging.first)];
+        unsigned int place = starts[local(hanging.first)];
         for (const Master &master : hanging.second)
-          local_masters[place++] = {local(master.first), master.second};
+          entries[place++] = {local(master.node), master.weight};
       }
+    local_masters =
+      NodeWeights<GlobalNode>(std::move(starts), std::move(entries));
     masters.clear();
     for (auto *all : {&outgoing, &incoming})
       for (auto &process : *all)
@@ -288,6 +289,7 @@ namespace Friction
   void
   LeafAssembler<dim>::begin(const NodalConstraints<dim> &new_constraints)
   {
+    Assert(constraints == nullptr, ExcMessage("Call begin() once."));
     constraints = &new_constraints;
     make_numbers_local();
     make_patterns();

@@ -4,8 +4,8 @@
 #include <common/discretization/cell_form.h>
 #include <common/nodes/nodal_constraints.h>
 #include <common/nodes/node_block_matrix.h>
+#include <common/nodes/node_weights.h>
 
-#include <deal.II/base/array_view.h>
 #include <deal.II/base/index_set.h>
 
 #include <deal.II/dofs/dof_handler.h>
@@ -113,20 +113,18 @@ namespace Friction
       std::vector<GlobalNode> columns;
     };
 
-    using Master  = std::pair<GlobalNode, double>;
-    using Masters = std::vector<Master>;
+    // A node that a hanging one gets a part of its value from.
+    using Master = typename NodeWeights<GlobalNode>::Entry;
 
     const MPI_Comm communicator;
     IndexSet       coupled;
 
     // The nodes at the vertices of the process' own cells: global numbers
     // first, local ones from begin() on; and where hanging nodes get their
-    // values from: by global numbers first, from begin() on by local ones, in
-    // compressed storage.
-    std::vector<GlobalNode>                 vertex_nodes;
-    std::unordered_map<GlobalNode, Masters> masters;
-    std::vector<std::size_t>                masters_begin;
-    Masters                                 local_masters;
+    // values from, by global numbers and, from begin() on, by local ones.
+    std::vector<GlobalNode>                             vertex_nodes;
+    std::unordered_map<GlobalNode, std::vector<Master>> masters;
+    NodeWeights<GlobalNode>                             local_masters;
 
     // By process: the rows that it gets from us, and we get from it.
     std::map<unsigned int, std::vector<Row>> outgoing, incoming;
@@ -138,8 +136,8 @@ namespace Friction
     std::size_t                        n_cells_done = 0;
     std::vector<Share>                 shares;
 
-    // None if the node does not hang.
-    ArrayView<const Master> masters_of(const GlobalNode node) const;
+    std::pair<const Master *, const Master *>
+    masters_of(const GlobalNode node) const;
 
     void collect_shares(const std::size_t cell);
 

@@ -70,7 +70,7 @@ namespace Friction
 
     // Takes vectors to the next mesh without p4est. Each cell of the old mesh
     // is still there, refined or not, and is given the values that it had.
-    // Functions are multilinear, and their values those at vertices.
+    // Degree of freedom dim*v+d of a cell is component d at vertex v.
     template <int dim>
     class UndividedTransfer
     {
@@ -128,13 +128,14 @@ namespace Friction
       static constexpr unsigned int n_vertices = 1u << dim;
       static constexpr unsigned int n_values   = n_vertices * dim;
 
-      // What a vertex of a child takes from those of its parent.
+      // Of child c, at its vertex v: what it takes from each vertex of the
+      // parent.
       std::array<std::array<std::array<double, n_vertices>, n_vertices>,
                  n_vertices>
         weights;
 
-      // The cells of the old mesh, and their values: all of the first vector,
-      // then all of the next; vertex by vertex.
+      // The cells of the old mesh, and the values of each: those of the first
+      // vector, then those of the next.
       std::vector<typename DoFHandler<dim>::cell_iterator> cells;
       std::vector<double>                                  values;
 

@@ -126,14 +126,15 @@ namespace Friction
       std::vector<char>         at_interface(n_nodes, 0);
       kept.reserve(vertex_dofs.size());
 
-      // deal.II gives a process numbers in a row.
+      // deal.II gives a process consecutive numbers, on the leaf mesh and on
+      // each level.
       Assert(owned.is_contiguous(), ExcInternalError());
       constexpr unsigned int        elsewhere = numbers::invalid_unsigned_int;
       const types::global_dof_index first =
         n_nodes > 0 ? owned.nth_index_in_set(0) : 0;
       const auto own_node = [&](const types::global_dof_index dof) {
         return dof >= first && dof < first + owned.n_elements()
-          ? static_cast<unsigned int>(dof - first) / dim
+          ? static_cast<unsigned int>((dof - first) / dim)
           : elsewhere;
       };
 

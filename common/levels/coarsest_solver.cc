@@ -83,7 +83,9 @@ namespace Friction
       for (unsigned int d = 0; d < dim * dim; ++d)
         complements[i][d] -= nulls[i][d];
     ghosts.update(reinterpret_cast<double *>(complements.data()), dim * dim);
-    // Row by row: each entry by itself would take longer than its search.
+
+    // A call for each row: one for each entry takes longer than finding its
+    // place in the row.
     std::vector<types::global_dof_index> columns;
     std::array<std::vector<double>, dim> rows;
     for (unsigned int i = 0; i < B.n_rows(); ++i)

@@ -32,8 +32,9 @@ namespace Friction
       layouts.push_back(k == last_level && finest_is_leaf_mesh
                           ? constraints.partitioner()
                           : hierarchy.level(k).partitioner());
-    // Without MGConstrainedDoFs: truncation holds what is prescribed, and where
-    // a level ends matters to copy_to_mg() alone.
+    // Without MGConstrainedDoFs, which step-50 has: truncation holds what is
+    // prescribed, and nodes at the boundary of a refined region matter only to
+    // copy_to_mg() and its like, which nobody calls here.
     transfer.build(dof_handler, layouts);
 
     for (unsigned int k = 0; k < hierarchy.n_levels(); ++k)

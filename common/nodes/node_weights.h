@@ -13,7 +13,8 @@ namespace Friction
    *
    * @tparam Column  what the nodes of its columns are numbered by: unsigned int
    *                 if these are nodes of a level, LeafNode if they are nodes
-   *                 of the leaf mesh. Rows are nodes of a level.
+   *                 of the leaf mesh. Rows are nodes of a level; in
+   *                 LeafAssembler rows and columns are nodes of the leaf mesh.
    */
   template <typename Column>
   class NodeWeights

@@ -209,7 +209,7 @@ namespace Friction
                               cell_points);
 
             for (const unsigned int f : cell->face_indices())
-              if (cell->face(f)->at_boundary())
+              if (cell->at_boundary(f))
                 {
                   std::vector<unsigned int> face_nodes;
                   std::vector<Point<dim>>   face_corners;

@@ -170,4 +170,5 @@ def main():
             print("  linear: " + plain.output.strip(), flush=True)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -7,10 +7,9 @@
 //   the linearisation says: a step that solves the linearised equations leaves
 //   a violation of second order. This is asked in all phases, with Coulomb's
 //   bound, with a given one, and where slip is prescribed;
-// - the step is that of the semismooth* Newton method of Gfrerer, Mandlmayr,
-//   Outrata and Valdman (2023), which linearises the law as a set: from the
-//   pair it goes to one that fulfils the law, by the resolvent of the law, and
-//   a step ends in the tangent space of the law there;
+// - a step is one of the semismooth* Newton method of Gfrerer, Mandlmayr,
+//   Outrata and Valdman (2023): from a pair it goes to one that fulfils the
+//   law, and ends in the tangent space of all such pairs there;
 // - the stiffnesses of a zone are those of its nodes over the root of their
 //   number in 3D, and over their number in 2D.
 
@@ -151,9 +150,9 @@ namespace test_semismooth_law
 
 
   // By how much a whole step is not one of the semismooth* Newton method: the
-  // pair on the graph of the law that has the same r + c u, and the distance of
-  // the pair after the step from the tangent space there. No derivative of a
-  // projection occurs.
+  // pair that fulfils the law and has the same r + c u, and the residual of the
+  // equations of the tangent space there in the pair after the step. No
+  // derivative of a projection occurs.
   template <int dim>
   double
   off_tangent_space(const DiscreteProblem<dim> &problem,
@@ -279,7 +278,7 @@ namespace test_semismooth_law
           }
         check_below(largest, 3e-2, what);
         if (node.n_free_tangents == dim - 1)
-          check_below(off, 1e-12, "the same as of the semismooth* method");
+          check_below(off, 1e-12, "and they are steps of the semismooth* method");
       };
     check_order(open, "steps of an open node");
     check_order(sticking, "of one that sticks");
