@@ -3,7 +3,7 @@
 
     draw.py DATA OUTPUT [--quick] [--only=PART,...]
 
-The parts are precision, cycles, solvers, stopping, stability and bounds. Missing or
+The parts are precision, cycles, solvers, stopping, stability, bounds and runs. Missing or
 impossible data are an error. Stability maps are drawn of all files
 stability-*.csv that are there."""
 
@@ -18,6 +18,7 @@ import runs
 import scaling
 import stability
 import stopping
+import whole_runs
 import work_precision
 from chart import DataError
 
@@ -41,6 +42,8 @@ def draw(part, data, output, quick):
             stability.draw(path, output)
     elif part == "bounds":
         bounds.draw(output)
+    elif part == "runs":
+        whole_runs.draw(output)
     else:
         raise DataError(f"There is no kind of chart '{part}'.")
 

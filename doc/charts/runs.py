@@ -8,8 +8,9 @@ the subject that is written below its title, the scene, and the sizes.
 
 
 # All parts that can be asked for, and those of them for which nothing is measured.
-PARTS = ("precision", "cycles", "solvers", "stopping", "stability", "bounds")
-DRAWN_ONLY = ("bounds",)
+PARTS = ("precision", "cycles", "solvers", "stopping", "stability", "bounds",
+         "runs")
+DRAWN_ONLY = ("bounds", "runs")
 
 UNIFORM = ["Refinement/Strategy=uniform"]
 
