@@ -10,6 +10,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <type_traits>
+#include <vector>
 
 namespace Friction
 {
@@ -20,6 +23,62 @@ namespace Friction
     half_width(const double measure)
     {
       return dim == 2 ? .5 * measure : std::sqrt(measure / numbers::PI);
+    }
+
+
+
+    // A record as numbers, to be sent: of other objects deal.II would pack each
+    // member by itself.
+    template <int dim>
+    using Numbers = std::array<double, 5 * dim + 6>;
+
+
+
+    // Calls f for each number of a record.
+    template <typename Record, typename F>
+    void
+    for_each_number(Record &record, const F &f)
+    {
+      for (auto *vector : {&record.normal,
+                           &record.displacement,
+                           &record.force,
+                           &record.slip_origin})
+        for (unsigned int d = 0; d < vector->dimension; ++d)
+          f((*vector)[d]);
+      for (unsigned int d = 0; d < record.point.dimension; ++d)
+        f(record.point[d]);
+      for (auto *number :
+           {&record.gap, &record.measure, &record.friction_bound})
+        f(*number);
+      for (auto *number : {&record.state, &record.section})
+        f(*number);
+      f(record.dof);
+    }
+
+
+
+    template <int dim>
+    Numbers<dim>
+    to_numbers(const ContactRecord<dim> &record)
+    {
+      Numbers<dim> numbers;
+      auto         place = numbers.begin();
+      for_each_number(record, [&](const auto x) { *place++ = x; });
+      return numbers;
+    }
+
+
+
+    template <int dim>
+    ContactRecord<dim>
+    from_numbers(const Numbers<dim> &numbers)
+    {
+      ContactRecord<dim> record;
+      auto               place = numbers.begin();
+      for_each_number(record, [&](auto &x) {
+        x = static_cast<std::decay_t<decltype(x)>>(*place++);
+      });
+      return record;
     }
 
 
@@ -35,8 +94,16 @@ namespace Friction
       if (Utilities::MPI::n_mpi_processes(communicator) == 1)
         all = own;
       else
-        for (const auto &part : Utilities::MPI::gather(communicator, own))
-          all.insert(all.end(), part.begin(), part.end());
+        {
+          // Utilities::MPI::gather() would compress them.
+          std::map<unsigned int, std::vector<Numbers<dim>>> numbers;
+          for (const ContactRecord<dim> &record : own)
+            numbers[0].push_back(to_numbers(record));
+          for (const auto &part :
+               Utilities::MPI::some_to_some(communicator, numbers))
+            for (const Numbers<dim> &record : part.second)
+              all.push_back(from_numbers<dim>(record));
+        }
 
       std::sort(all.begin(), all.end(), [](const auto &a, const auto &b) {
         for (unsigned int d = 0; d < dim; ++d)
