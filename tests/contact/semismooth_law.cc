@@ -259,27 +259,28 @@ namespace test_semismooth_law
     check(is(sliding, true, Law::Tangent::slides), "a node that slides");
 
     // Pairs that violate the law, in all phases.
-    const auto check_order =
-      [&](Pair<dim> pair, const std::string &what, const double given = 0.) {
-        double largest = 0, off = 0;
-        for (unsigned int i = 0; i < 20; ++i)
-          {
-            Pair<dim> wrong = pair;
-            for (unsigned int e = 0; e <= node.n_free_tangents; ++e)
-              {
-                wrong.u[e] += random(-.01, .01);
-                wrong.r[e] += random(-.01, .01);
-              }
-            largest = std::max(
-              largest, second_order(problem, node, wrong, random, given));
-            if (node.n_free_tangents == dim - 1)
-              off = std::max(
-                off, off_tangent_space(problem, node, wrong, random, given));
-          }
-        check_below(largest, 3e-2, what);
-        if (node.n_free_tangents == dim - 1)
-          check_below(off, 1e-12, "and they are steps of the semismooth* method");
-      };
+    const auto check_order = [&](Pair<dim>          pair,
+                                 const std::string &what,
+                                 const double       given = 0.) {
+      double largest = 0, off = 0;
+      for (unsigned int i = 0; i < 20; ++i)
+        {
+          Pair<dim> wrong = pair;
+          for (unsigned int e = 0; e <= node.n_free_tangents; ++e)
+            {
+              wrong.u[e] += random(-.01, .01);
+              wrong.r[e] += random(-.01, .01);
+            }
+          largest = std::max(largest,
+                             second_order(problem, node, wrong, random, given));
+          if (node.n_free_tangents == dim - 1)
+            off = std::max(
+              off, off_tangent_space(problem, node, wrong, random, given));
+        }
+      check_below(largest, 3e-2, what);
+      if (node.n_free_tangents == dim - 1)
+        check_below(off, 1e-12, "and they are steps of the semismooth* method");
+    };
     check_order(open, "steps of an open node");
     check_order(sticking, "of one that sticks");
     check_order(sliding, "of one that slides");

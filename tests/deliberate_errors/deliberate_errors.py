@@ -20,9 +20,9 @@ ERRORS = [
      "sum -= problem.effective_coefficient(problem.contact[p]) *",
      "the sign of the friction term in the energy"),
     ("hanging row lost", "common/discretization/leaf_matrix.cc",
-     "shares.push_back({master.first, v, master.second});",
+     "shares.push_back({master->node, v, master->weight});",
      "{\n"
-     "              shares.push_back({master.first, v, master.second});\n"
+     "              shares.push_back({master->node, v, master->weight});\n"
      "              break;\n"
      "            }",
      "row and column of a hanging node are handed on to one of its masters only"),
