@@ -34,7 +34,7 @@ namespace Friction
                           : hierarchy.level(k).partitioner());
     // Without MGConstrainedDoFs, which step-50 has: truncation holds what is
     // prescribed, and nodes at the boundary of a refined region matter only to
-    // copy_to_mg() and its like, which nobody calls here.
+    // copy_to_mg() and its like, which are not called here.
     transfer.build(dof_handler, layouts);
 
     for (unsigned int k = 0; k < hierarchy.n_levels(); ++k)

@@ -34,36 +34,41 @@ namespace Friction
 
 
 
-    // Calls f for each number of a record.
-    template <typename Record, typename F>
-    void
-    for_each_number(Record &record, const F &f)
+    // An archive, as ContactRecord::serialize() wants one, that calls a
+    // function for each number.
+    template <typename F>
+    struct ForEachNumber
     {
-      for (auto *vector : {&record.normal,
-                           &record.displacement,
-                           &record.force,
-                           &record.slip_origin})
-        for (unsigned int d = 0; d < vector->dimension; ++d)
-          f((*vector)[d]);
-      for (unsigned int d = 0; d < record.point.dimension; ++d)
-        f(record.point[d]);
-      for (auto *number :
-           {&record.gap, &record.measure, &record.friction_bound})
-        f(*number);
-      for (auto *number : {&record.state, &record.section})
-        f(*number);
-      f(record.dof);
-    }
+      explicit ForEachNumber(const F &f)
+        : f(f)
+      {}
+
+      const F f;
+
+      template <typename T>
+      ForEachNumber &
+      operator&(T &x)
+      {
+        if constexpr (std::is_arithmetic_v<T>)
+          f(x);
+        else
+          for (unsigned int d = 0; d < T::dimension; ++d)
+            f(x[d]);
+        return *this;
+      }
+    };
 
 
 
     template <int dim>
     Numbers<dim>
-    to_numbers(const ContactRecord<dim> &record)
+    to_numbers(ContactRecord<dim> record)
     {
-      Numbers<dim> numbers;
-      auto         place = numbers.begin();
-      for_each_number(record, [&](const auto x) { *place++ = x; });
+      Numbers<dim>  numbers;
+      auto          place = numbers.begin();
+      ForEachNumber archive{[&](const auto x) { *place++ = x; }};
+      record.serialize(archive, 0);
+      Assert(place == numbers.end(), ExcInternalError());
       return numbers;
     }
 
@@ -75,9 +80,9 @@ namespace Friction
     {
       ContactRecord<dim> record;
       auto               place = numbers.begin();
-      for_each_number(record, [&](auto &x) {
-        x = static_cast<std::decay_t<decltype(x)>>(*place++);
-      });
+      ForEachNumber      archive{
+        [&](auto &x) { x = static_cast<std::decay_t<decltype(x)>>(*place++); }};
+      record.serialize(archive, 0);
       return record;
     }
 
