@@ -1,4 +1,4 @@
-"""Chart 7: what a user waits for, and what of it are solutions, beside an older
+"""Below chart 3: what a user waits for, and what of it are solutions, beside an older
 state. Drawn from what benchmark-runs has measured, doc/benchmark/runs.txt."""
 
 import re
@@ -50,7 +50,6 @@ def draw(output):
     top = headline(figure, f"Whole runs take {min(ratios):.2f} to {max(ratios):.2f} "
                    "of the time that they took",
                    "One process, default output; set-up is degrees of freedom, "
-                   "assembly and levels. The older state (pale) had the same "
-                   "methods.")
+                   "assembly and levels. The older state is pale.")
     axes_below(figure, top, 0.25)
     save(figure, output, "whole-runs.svg")

@@ -29,22 +29,29 @@ import h5py
 TABLE = re.compile(r"^ +(\d+) +\d+ +(\d+) +(\d+) +(\d+) +(\d+) +(\d+) ")
 PART = re.compile(r"^(\S.*?) +([\d.]+) +([\d.]+)%$", re.M)
 
+# One process by itself, on one processor core.
+ENVIRONMENT = dict(os.environ,
+                   OMPI_ALLOW_RUN_AS_ROOT="1",
+                   OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                   OMPI_MCA_ess_singleton_isolated="1",
+                   OMP_NUM_THREADS="1",
+                   DEAL_II_NUM_THREADS="1")
+
+
+def seconds_of_parts(output):
+    """What `Output/Profile = true` says of the parts of a run."""
+    return {m.group(1): float(m.group(2)) for m in PART.finditer(output)}
+
 
 class Run:
     """One run of a program: its seconds, peak memory and output."""
 
     def __init__(self, command):
-        environment = dict(os.environ,
-                           OMPI_ALLOW_RUN_AS_ROOT="1",
-                           OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                           OMPI_MCA_ess_singleton_isolated="1",
-                           OMP_NUM_THREADS="1",
-                           DEAL_II_NUM_THREADS="1")
         with tempfile.TemporaryFile("w+") as output:
             begin = time.monotonic()
             process = subprocess.Popen(command, stdout=output,
                                        stderr=subprocess.STDOUT,
-                                       env=environment)
+                                       env=ENVIRONMENT)
             _, status, usage = os.wait4(process.pid, 0)
             self.seconds = time.monotonic() - begin
             process.returncode = os.waitstatus_to_exitcode(status)
@@ -71,8 +78,7 @@ class Run:
         return solution, setup, self.seconds - solution - setup
 
     def parts(self):
-        return {m.group(1): float(m.group(2))
-                for m in PART.finditer(self.output)}
+        return seconds_of_parts(self.output)
 
 
 def best(commands, repeat, directory=None):
@@ -97,9 +103,7 @@ def known_scene(binary, scene, directory):
         output = subprocess.run(
             [binary, copy, "Refinement/Levels=0", "Output/Fields=false",
              "Output/Directory=" + os.path.join(directory, "known")],
-            env=dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1",
-                     OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1"),
-            text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+            env=ENVIRONMENT, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
             check=False).stdout
         unknown = re.search(r":(\d+): there is no entry", output)
         if not unknown:
