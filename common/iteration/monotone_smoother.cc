@@ -124,20 +124,21 @@ namespace Friction
     if (!backwards && x.residual.size() != x.u.size())
       x.residual.reinit(x.u, true);
 
-    const auto relax_contact_nodes = [&](const unsigned int chunk,
-                                         const bool         update) {
-      const unsigned int begin = first_contact[chunk],
-                         end   = first_contact[chunk + 1];
-      const auto at            = [&](const unsigned int i) {
-        return by_chunk[backwards ? begin + end - 1 - i : i];
+    const auto relax_contact_nodes =
+      [&](const unsigned int chunk, const bool update, Prefetch &fetch) {
+        const unsigned int begin = first_contact[chunk],
+                           end   = first_contact[chunk + 1];
+        const auto at            = [&](const unsigned int i) {
+          return by_chunk[backwards ? begin + end - 1 - i : i];
+        };
+        for (unsigned int i = begin; i < end; ++i)
+          {
+            fetch.step();
+            if (i + 1 < end)
+              matrix.prefetch(problem.contact[at(i + 1)].node);
+            relax_contact_node(at(i), x, update, backwards);
+          }
       };
-      for (unsigned int i = begin; i < end; ++i)
-        {
-          if (i + 1 < end)
-            matrix.prefetch(problem.contact[at(i + 1)].node);
-          relax_contact_node(at(i), x, update);
-        }
-    };
 
     schedule.run(
       sweeps,
@@ -147,19 +148,15 @@ namespace Friction
           const RowRange    &ahead) {
         const bool update =
           x.updates_normal_forces && (stage > 0 || !trust_first_normal_forces);
+        const RowRange rows = schedule.chunk(chunk);
         if (stage == sweeps.number)
-          matrix.residual(
-            x.residual.begin(), f, u, schedule.chunk(chunk), ahead);
-        else if (backwards)
-          {
-            relax_contact_nodes(chunk, update);
-            ordinary_nodes->relax_chunk(chunk, f, u, backwards, ahead);
-          }
-        else
-          {
-            ordinary_nodes->relax_chunk(chunk, f, u, backwards, ahead);
-            relax_contact_nodes(chunk, update);
-          }
+          return matrix.residual(x.residual.begin(), f, u, rows, ahead);
+        Prefetch fetch = matrix.prefetch(ahead, rows.second - rows.first);
+        if (backwards)
+          relax_contact_nodes(chunk, update, fetch);
+        ordinary_nodes->relax_chunk(chunk, f, u, backwards, fetch);
+        if (!backwards)
+          relax_contact_nodes(chunk, update, fetch);
       },
       problem.stiffness.ghosts(),
       u);
@@ -173,8 +170,10 @@ namespace Friction
 
   template <int dim>
   void
-  MonotoneSmoother<dim>::relax_contact_node(
-    const unsigned int p, Iterate &x, const bool update_normal_force) const
+  MonotoneSmoother<dim>::relax_contact_node(const unsigned int p,
+                                            Iterate           &x,
+                                            const bool update_normal_force,
+                                            const bool backwards) const
   {
     const NodeBlockMatrix<dim> &matrix = problem.stiffness.blocks();
     const ContactNode<dim>     &node   = problem.contact[p];
@@ -183,10 +182,11 @@ namespace Friction
     // The force that the other nodes leave, r~ = r + A_pp u_p in (6.18); at an
     // interface to other processes with the damping in A_pp. Displacements of
     // the local problem count from where friction does.
-    const NodeValue<dim> product = matrix.row_times(node.node, x.u.begin());
-    const auto           damped  = damped_diagonals.find(node.node);
-    Tensor<1, dim>       residual, force, old_value;
-    NodeValue<dim>       from_origin;
+    const NodeValue<dim> product =
+      matrix.row_times(node.node, x.u.begin(), backwards);
+    const auto     damped = damped_diagonals.find(node.node);
+    Tensor<1, dim> residual, force, old_value;
+    NodeValue<dim> from_origin;
     for (unsigned int d = 0; d < dim; ++d)
       from_origin[d] = old_value[d] = value[d] - node.slip_origin[d];
     const NodeValue<dim> diagonal =

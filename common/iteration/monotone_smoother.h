@@ -100,7 +100,8 @@ namespace Friction
 
     void relax_contact_node(const unsigned int p,
                             Iterate           &x,
-                            const bool         update_normal_force) const;
+                            const bool         update_normal_force,
+                            const bool         backwards) const;
   };
 } // namespace Friction
 

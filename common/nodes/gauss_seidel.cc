@@ -32,7 +32,11 @@ namespace Friction
         if (stage == sweeps.number)
           A->residual(residual, b, x, sweep_schedule.chunk(chunk), ahead);
         else
-          relax_chunk(chunk, b, x, sweeps.backwards, ahead);
+          {
+            const RowRange all   = sweep_schedule.chunk(chunk);
+            Prefetch       fetch = A->prefetch(ahead, all.second - all.first);
+            relax_chunk(chunk, b, x, sweeps.backwards, fetch);
+          }
       },
       ghosts,
       x);
@@ -46,13 +50,11 @@ namespace Friction
                                 const double      *b,
                                 double            *x,
                                 const bool         backwards,
-                                const RowRange    &ahead) const
+                                Prefetch          &fetch) const
   {
     const BlockRows<dim>  rows    = A->rows();
     const NodeBlock<dim> *inverse = inverse_diagonals->data();
     const NodeRanges     &nodes   = sweep_schedule.nodes(chunk);
-    const RowRange        all     = sweep_schedule.chunk(chunk);
-    Prefetch              fetch   = A->prefetch(ahead, all.second - all.first);
     for (unsigned int k = 0; k < nodes.size(); ++k)
       RowKernels::relax<dim>(
         rows,

@@ -44,13 +44,12 @@ namespace Friction
              double        *residual = nullptr) const;
 
     /** One sweep over the nodes of one chunk of schedule(), for a caller that
-     * relaxes other nodes in between. Meanwhile has the rows @p ahead brought
-     * into the cache. */
+     * relaxes other nodes in between. @p fetch makes one step for each node. */
     void relax_chunk(const unsigned int chunk,
                      const double      *b,
                      double            *x,
                      const bool         backwards,
-                     const RowRange    &ahead = {}) const;
+                     Prefetch          &fetch) const;
 
     const SweepSchedule<dim> &
     schedule() const

@@ -131,11 +131,14 @@ namespace Friction
     /** The position of block (row,column), or row_end(row) if there is none. */
     std::size_t find(const unsigned int row, const unsigned int column) const;
 
-    /** The value of row @p row of the product A x. */
+    /** The value of row @p row of the product A x; about @p backwards see
+     * RowKernels::times(). */
     NodeValue<dim>
-    row_times(const unsigned int row, const double *x) const
+    row_times(const unsigned int row,
+              const double      *x,
+              const bool         backwards = false) const
     {
-      return RowKernels::times<dim>(rows(), row, x);
+      return RowKernels::times<dim>(rows(), row, x, backwards);
     }
 
     /** For RowKernels. */

@@ -196,18 +196,36 @@ namespace Friction
 
 
 
+      template <int dim, typename Four, int step>
+      inline DEAL_II_ALWAYS_INLINE void
+      times_in_steps(const BlockRows<dim> &A,
+                     const unsigned int    row,
+                     const double         *x,
+                     double               *product)
+      {
+        const std::size_t begin = A.starts[row], end = A.starts[row + 1];
+        const std::size_t n     = end - begin;
+        const std::size_t first = (step > 0 || n == 0) ? begin : end - 1;
+        Sum<dim, Four>    sum;
+        add_blocks<step>(sum, A, first, n, x);
+        for (int d = 0; d < dim; ++d)
+          product[d] = sum[d];
+      }
+
+
+
       template <int dim, typename Four>
       inline DEAL_II_ALWAYS_INLINE void
       times_body(const BlockRows<dim> &A,
                  const unsigned int    row,
                  const double         *x,
+                 const bool            backwards,
                  double               *product)
       {
-        const std::size_t begin = A.starts[row], end = A.starts[row + 1];
-        Sum<dim, Four>    sum;
-        add_blocks<1>(sum, A, begin, end - begin, x);
-        for (int d = 0; d < dim; ++d)
-          product[d] = sum[d];
+        if (backwards)
+          times_in_steps<dim, Four, -1>(A, row, x, product);
+        else
+          times_in_steps<dim, Four, 1>(A, row, x, product);
       }
 
 
@@ -227,7 +245,7 @@ namespace Friction
           {
             fetch.step();
             double product[dim];
-            times_body<dim, Four>(A, i, x, product);
+            times_in_steps<dim, Four, 1>(A, i, x, product);
             for (int d = 0; d < dim; ++d)
               r[dim * i + d] = b[dim * i + d] - product[d];
           }
@@ -329,9 +347,10 @@ namespace Friction
       times_avx2(const BlockRows<dim> &A,
                  const unsigned int    row,
                  const double         *x,
+                 const bool            backwards,
                  double               *product)
       {
-        times_body<dim, OneQuad>(A, row, x, product);
+        times_body<dim, OneQuad>(A, row, x, backwards, product);
       }
 
       template <int dim>
@@ -387,15 +406,18 @@ namespace Friction
 
     template <int dim>
     NodeValue<dim>
-    times(const BlockRows<dim> &A, const unsigned int row, const double *x)
+    times(const BlockRows<dim> &A,
+          const unsigned int    row,
+          const double         *x,
+          const bool            backwards)
     {
       NodeValue<dim> product;
 #ifdef FRICTION_AVX2
       if (in_use == Instructions::avx2)
-        times_avx2<dim>(A, row, x, product.data());
+        times_avx2<dim>(A, row, x, backwards, product.data());
       else
 #endif
-        times_body<dim, TwoPairs>(A, row, x, product.data());
+        times_body<dim, TwoPairs>(A, row, x, backwards, product.data());
       return product;
     }
 
@@ -438,26 +460,30 @@ namespace Friction
 
 
 
-    template NodeValue<2>
-    times<2>(const BlockRows<2> &, const unsigned int, const double *);
-    template void residual<2>(const BlockRows<2> &,
+    template NodeValue<2> times<2>(const BlockRows<2> &,
+                                   const unsigned int,
+                                   const double *,
+                                   const bool);
+    template void         residual<2>(const BlockRows<2> &,
                               const RowLoop &,
                               double *,
                               const double *,
                               const double *);
-    template void relax<2>(const BlockRows<2> &,
+    template void         relax<2>(const BlockRows<2> &,
                            const NodeBlock<2> *,
                            const RowLoop &,
                            const double *,
                            double *);
-    template NodeValue<3>
-    times<3>(const BlockRows<3> &, const unsigned int, const double *);
-    template void residual<3>(const BlockRows<3> &,
+    template NodeValue<3> times<3>(const BlockRows<3> &,
+                                   const unsigned int,
+                                   const double *,
+                                   const bool);
+    template void         residual<3>(const BlockRows<3> &,
                               const RowLoop &,
                               double *,
                               const double *,
                               const double *);
-    template void relax<3>(const BlockRows<3> &,
+    template void         relax<3>(const BlockRows<3> &,
                            const NodeBlock<3> *,
                            const RowLoop &,
                            const double *,

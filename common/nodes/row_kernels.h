@@ -91,10 +91,19 @@ namespace Friction
       Prefetch &prefetch;
     };
 
-    /** The value of row @p row of the product A x. */
+    /**
+     * The value of row @p row of the product A x.
+     * @param backwards  whether the caller takes rows in descending order and
+     *                   changes the value of each: the sum then ends with
+     *                   the values that were changed last, so that the
+     *                   processor can begin with it before it has them. Either
+     *                   way the sum differs in rounding only.
+     */
     template <int dim>
-    NodeValue<dim>
-    times(const BlockRows<dim> &A, const unsigned int row, const double *x);
+    NodeValue<dim> times(const BlockRows<dim> &A,
+                         const unsigned int    row,
+                         const double         *x,
+                         const bool            backwards = false);
 
     /** r = b - A x for some rows, forwards in any case. */
     template <int dim>
