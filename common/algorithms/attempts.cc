@@ -143,6 +143,31 @@ namespace Friction
 
 
 
+  // Volumes that hardly change make any correction slow, those of Trilinos more
+  // than ours: as long as it gets on, nothing else is better.
+  template <int dim>
+  void
+  SafeguardedSolver<dim>::Attempts::go_on_with_algorithm()
+  {
+    constexpr double progress = .1;
+    double           before   = std::numeric_limits<double>::infinity();
+    while (!report.converged && smallest_violation <= progress * before &&
+           solver.budget->begin_attempt())
+      {
+        before       = smallest_violation;
+        search.u     = best;
+        search.state = best_state;
+        attempt(algorithm + " once more", [&]() {
+          return solver.algorithm_to_the_end(
+            solver.iteration, solver.later_settings(search.accuracy), search);
+        });
+      }
+    if (report.converged)
+      solver.next_method = Method::algorithm;
+  }
+
+
+
   template <int dim>
   void
   SafeguardedSolver<dim>::Attempts::try_contact_nodes_alone()
@@ -284,7 +309,7 @@ namespace Friction
       try_aggregates();
     else if (begin_with == Method::algebraic ||
              (begin_with == Method::contact_nodes && !is_condensed &&
-              !much_friction))
+              !much_friction && !solver.settings.nearly_incompressible()))
       {
         // Much dearer, so that others may try once what they can do on this
         // mesh.
@@ -354,7 +379,11 @@ namespace Friction
     if (!report.converged && may_aggregate && solver.budget->begin_attempt())
       try_algorithm(patience);
     if (!outer_failure && !much_friction)
-      try_algebraic_corrections();
+      {
+        if (settings.nearly_incompressible() && solver.has_defaults())
+          go_on_with_algorithm();
+        try_algebraic_corrections();
+      }
     try_newton();
     try_continuation(/*is_last =*/true);
     try_algebraic_corrections();

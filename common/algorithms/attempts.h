@@ -58,6 +58,7 @@ namespace Friction
       const unsigned int its_patience,
       const unsigned int worthwhile = std::numeric_limits<unsigned int>::max());
 
+    void go_on_with_algorithm();
     void try_contact_nodes_alone();
     void try_aggregates();
     void try_algebraic_corrections();

@@ -16,16 +16,11 @@ namespace Friction
   {
     // Multiplications that take about as long as a multigrid cycle of an easy
     // material: so many per unknown, and as many as it takes to go through the
-    // levels, however small they are. And unknowns up to which it is worth
-    // while to count them.
+    // levels, however small they are.
     template <int dim>
-    constexpr double per_unknown = (dim == 2 ? 250. : 2500.);
+    constexpr double per_unknown = (dim == 2 ? 500. : 2500.);
 
-    template <int dim>
-    constexpr double at_least = (dim == 2 ? 1.5e5 : 3e5);
-
-    template <int dim>
-    constexpr types::global_dof_index largest = (dim == 2 ? 60000 : 20000);
+    constexpr double at_least = 3e5;
 
     // Newton's method, of which a step takes as long as a cycle, takes over
     // once phases have settled if Algorithm 3 would go on for more cycles than
@@ -44,6 +39,18 @@ namespace Friction
     is_alone(const MPI_Comm communicator)
     {
       return Utilities::MPI::n_mpi_processes(communicator) == 1;
+    }
+
+
+
+    // Unknowns up to which it is worth while to count multiplications. Factors
+    // in two dimensions have a kilobyte for each of them, and as much on each
+    // of several processes.
+    template <int dim>
+    types::global_dof_index
+    largest(const MPI_Comm communicator)
+    {
+      return dim == 3 ? 20000 : is_alone(communicator) ? 600000 : 60000;
     }
   } // namespace
 
@@ -154,7 +161,8 @@ namespace Friction
     , settings(settings)
     , matrix(&problem.stiffness.blocks())
   {
-    if (problem.constraints.partitioner()->size() > largest<dim>)
+    if (problem.constraints.partitioner()->size() >
+        largest<dim>(problem.communicator()))
       return;
     const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
     gather_nodes(own_positions);
@@ -331,7 +339,7 @@ namespace Friction
     const double cycles = 3 * n * n * (10 + n / 6);
     return n > 0 &&
       tree->cost(dim) + cycles <=
-      n_cycles * (at_least<dim> + per_unknown<dim> * dim * matrix->n_rows());
+      n_cycles * (at_least + per_unknown<dim> * dim * matrix->n_rows());
   }
 
 

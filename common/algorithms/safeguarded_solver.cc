@@ -13,23 +13,32 @@ namespace Friction
 {
   namespace
   {
-    // How many cycles contact nodes alone may take the time of: where a
-    // material is nearly incompressible, which makes cycles several times as
-    // dear, and is solved to a given tolerance; and where fewer will do, or are
-    // cheaper. Where others have failed, as many as are ever worth while.
+    // How many cycles contact nodes alone may take the time of, where materials
+    // jump or are nearly incompressible, or most nodes are in lines: if the
+    // solution is to be as exact as its mesh; and to a given tolerance, which
+    // takes many cycles there, and those of a nearly incompressible material
+    // the time of two or three. Where others have failed, as many as are ever
+    // worth while.
     constexpr double cycles_to_expect = 24;
+
+    template <int dim>
+    double
+    cycles_to_the_end(const double lame_ratio)
+    {
+      return std::max(dim == 2 ? 60. : 36., 5. * std::sqrt(lame_ratio));
+    }
 
     // And for any material, to a given tolerance; fewer in three dimensions,
     // where CondensedSolver is generous with multiplications per cycle. And
     // unknowns up to which that is possible.
     template <int dim>
-    constexpr double quick_cycles = (dim == 2 ? 8 : 3);
+    constexpr double quick_cycles = (dim == 2 ? 4 : 3);
 
     template <int dim>
     constexpr types::global_dof_index largest_quick = (dim == 2 ? 5000 : 8000);
 
-    template <int dim>
-    constexpr double cycles_to_the_end = (dim == 2 ? 72 : 36);
+    // Where Newton's method would be next.
+    constexpr double cycles_of_newton = 36;
 
 
 
@@ -187,17 +196,16 @@ namespace Friction
         problem.constraints.partitioner()->size() <= largest_quick<dim> &&
         contact_nodes_alone_take_less(search, quick_cycles<dim>))
       return true;
-    if (!(settings.nearly_incompressible ||
+    if (!(settings.nearly_incompressible() ||
           (others_have_failed && !much_friction()) || materials_do_jump() ||
           mostly_lines_in_space()))
       return false;
-    const bool are_dearer =
-      settings.nearly_incompressible && settings.energy_tolerance == 0.;
-    return contact_nodes_alone_take_less(search,
-                                         others_have_failed
-                                           ? CondensedSolver<dim>::most_cycles
-                                           : are_dearer ? cycles_to_the_end<dim>
-                                                        : cycles_to_expect);
+    const double n_cycles = (others_have_failed ? Condensed::most_cycles
+                               : settings.energy_tolerance > 0.
+                               ? cycles_to_expect
+                               : cycles_to_the_end<dim>(settings.lame_ratio));
+    return contact_nodes_alone_take_less(
+      search, std::min(n_cycles, Condensed::most_cycles));
   }
 
 
@@ -228,7 +236,7 @@ namespace Friction
     const Search &search)
   {
     return may_condense() &&
-      contact_nodes_alone_take_less(search, cycles_to_the_end<dim>);
+      contact_nodes_alone_take_less(search, cycles_of_newton);
   }
 
 
@@ -386,8 +394,8 @@ namespace Friction
   {
     // With lines in space the levels of the mesh may be good ones, also where
     // those of the matrix are tried.
-    if (!settings.has_default_corrections() || settings.nearly_incompressible ||
-        materials_do_jump())
+    if (!settings.has_default_corrections() ||
+        settings.nearly_incompressible() || materials_do_jump())
       return CoulombSolver<dim>(its_iteration, its_settings)
         .solve(search.u, search.state, search.progress);
     return NewtonFinish<dim>(

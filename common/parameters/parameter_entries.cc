@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <limits>
 
 namespace Friction
 {
@@ -22,6 +23,11 @@ namespace Friction
     class StepsOrAutomatic : public Patterns::PatternBase
     {
     public:
+      StepsOrAutomatic(const int smallest,
+                       const int largest = std::numeric_limits<int>::max())
+        : steps(smallest, largest)
+      {}
+
       bool
       match(const std::string &text) const override
       {
@@ -37,11 +43,11 @@ namespace Friction
       std::unique_ptr<PatternBase>
       clone() const override
       {
-        return std::make_unique<StepsOrAutomatic>();
+        return std::make_unique<StepsOrAutomatic>(*this);
       }
 
     private:
-      const Patterns::Integer steps = Patterns::Integer(1);
+      const Patterns::Integer steps;
     };
   } // namespace
 
@@ -54,7 +60,7 @@ namespace Friction
     const auto number   = make(Patterns::Double());
     const auto positive = make(Patterns::Double(1e-300));
     const auto steps    = make(Patterns::Integer(1));
-    const auto sweeps   = make(StepsOrAutomatic());
+    const auto sweeps   = make(StepsOrAutomatic(1));
     const auto flag     = make(Patterns::Bool());
     const auto choice   = [](const std::string &choices) {
       return make(Patterns::Selection(choices));
@@ -480,10 +486,11 @@ namespace Friction
        "Largest step length of the line search."},
       {"Solver",
        "Recombined steps",
-       "1",
-       make(Patterns::Integer(0, 20)),
+       "automatic",
+       make(StepsOrAutomatic(0, 20)),
        "Number of previous steps that a truncated coarse correction is "
-       "recombined with; 0 for none."},
+       "recombined with; 0 for none. 'automatic': 1, or 5 if a material is "
+       "nearly incompressible."},
       {"Solver",
        "Outer damping",
        "1",

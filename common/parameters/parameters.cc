@@ -830,11 +830,14 @@ namespace Friction
         (values.get("Solver/Local solver") == "secular equation"
            ? LocalSolver::secular_equation
            : LocalSolver::uzawa);
-      unsigned int sweeps = enough_smoothing_steps(parameters.material);
+      const auto lame_ratio = [](const Material &material) {
+        return material.lambda() / material.mu();
+      };
+      solver.lame_ratio = lame_ratio(parameters.material);
       for (const auto &region : parameters.regions)
-        sweeps = std::max(sweeps, enough_smoothing_steps(region.material));
-      solver.nearly_incompressible =
-        sweeps > SolverSettings().coarse_smoothing_steps;
+        solver.lame_ratio =
+          std::max(solver.lame_ratio, lame_ratio(region.material));
+      const unsigned int sweeps = enough_smoothing_steps(solver.lame_ratio);
       solver.smoothing_steps = values.steps("Solver/Smoothing steps", sweeps);
       solver.coarse_smoothing_steps =
         values.steps("Solver/Coarse smoothing steps", std::max(6u, sweeps));
@@ -847,8 +850,9 @@ namespace Friction
       solver.maximum_outer_iterations =
         values.integer("Solver/Maximum outer iterations");
       solver.maximum_step_length = values.number("Solver/Maximum step length");
-      solver.recombined_steps    = values.integer("Solver/Recombined steps");
-      solver.outer_damping       = values.number("Solver/Outer damping");
+      solver.recombined_steps    = values.steps(
+        "Solver/Recombined steps", solver.nearly_incompressible() ? 5 : 1);
+      solver.outer_damping = values.number("Solver/Outer damping");
       solver.mixed_outer_iterations =
         values.integer("Solver/Mixed outer iterations");
       solver.safeguards              = values.flag("Solver/Safeguards");

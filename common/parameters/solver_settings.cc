@@ -11,9 +11,17 @@ namespace Friction
   // doc/benchmark/incompressible.txt. Three of them up to a Poisson ratio of
   // 0.45, where the ratio of the two moduli is nine.
   unsigned int
-  enough_smoothing_steps(const Material &material)
+  enough_smoothing_steps(const double lame_ratio)
   {
-    const double ratio = material.lambda() / material.mu();
-    return std::lround(std::min(20., std::max(3., ratio / 3.)));
+    return std::lround(std::min(20., std::max(3., lame_ratio / 3.)));
+  }
+
+
+
+  bool
+  SolverSettings::nearly_incompressible() const
+  {
+    return enough_smoothing_steps(lame_ratio) >
+      SolverSettings().coarse_smoothing_steps;
   }
 } // namespace Friction

@@ -149,9 +149,13 @@ namespace Friction
     /// Where these may leave levels alone.
     CondensationUse condensation = CondensationUse::where_quicker;
 
-    /// Whether the volume of the body, or of a part of it, hardly changes: more
-    /// sweeps are wanted then than the levels have otherwise.
-    bool nearly_incompressible = false;
+    /// The largest ratio $\lambda/\mu$ of Lame's constants in the body: how
+    /// much stiffer it is against a change of volume than against one of shape.
+    double lame_ratio = 0.;
+
+    /** Whether the volume of the body, or of a part of it, hardly changes: more
+     * sweeps are wanted then than the levels have otherwise. */
+    bool nearly_incompressible() const;
 
     /** Whether corrections are those that a user gets who does not choose any.
      * Who does wants to see them work. */
@@ -165,9 +169,9 @@ namespace Friction
     }
   };
 
-  /** How many smoothing steps a body of this material needs, which is what
-   * `automatic` means. */
-  unsigned int enough_smoothing_steps(const Material &material);
+  /** How many smoothing steps a body of this ratio $\lambda/\mu$ needs, which
+   * is what `automatic` means. */
+  unsigned int enough_smoothing_steps(const double lame_ratio);
 } // namespace Friction
 
 #endif

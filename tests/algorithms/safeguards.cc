@@ -213,6 +213,33 @@ namespace test_safeguards
 
 
 
+  // A material that hardly changes its volume, with levels: nothing else is
+  // better than Algorithm 3, which goes on where it was given up.
+  void
+  test_little_volume()
+  {
+    std::cout << "Nearly incompressible" << std::endl;
+    Parameters         p = read_parameters(SCENES_DIR "/block.prm",
+                                   {"Material/Poisson ratio=0.4999",
+                                            "Material/Volumetric strain=mean",
+                                            "Refinement/Initial refinements=4",
+                                            "Solver/Inner tolerance=1e-9",
+                                            "Solver/Condensation=never"});
+    VectorType         u, v;
+    ContactState       state(0, false), other(0, false);
+    const SolverReport report = solve<2>(p, u, state);
+    check(report.converged, "it is solved");
+    for (const SolverAttempt &attempt : report.attempts)
+      std::cout << attempt.name << std::endl;
+    check(report.next_method == Method::algorithm,
+          "and the next mesh begins with that");
+    p.solver.condensation = CondensationUse::where_cycles_are_many;
+    check(solve<2>(p, v, other).converged, "and on contact nodes alone");
+    check_below(relative_distance(u, v), 1e-6, "displacements agree");
+  }
+
+
+
   // No solution satisfies the laws to the last digit. If that is what is asked
   // for, everything is tried, and what is said in the end is that it was not
   // enough.
@@ -246,5 +273,6 @@ TEST(safeguards)
   test_much_friction(false);
   test_much_friction(true);
   test_much_friction_and_little_volume();
+  test_little_volume();
   test_failure();
 }

@@ -2,7 +2,8 @@
 # The rate of the multigrid iteration for materials that can hardly be
 # compressed: cycles, contraction per cycle and solve time on the finest level,
 # with the sweeps of compressible materials, with the automatic ones, and with
-# more recombined steps besides.
+# more recombined steps besides, all without safeguards. Then cycles and seconds
+# of the last three levels as they come, on contact nodes alone or not.
 # Usage: incompressible.sh PROGRAM_2D SCENES_2D PROGRAM_3D SCENES_3D
 program_2d=$1
 scenes_2d=$2
@@ -32,13 +33,37 @@ table() {
       printf '%6s  %-9s  ' $nu $strain
       run "$@" "Material/Poisson ratio=$nu" \
         "Material/Volumetric strain=$strain" 'Solver/Smoothing steps=3' \
-        'Solver/Coarse smoothing steps=6'
+        'Solver/Coarse smoothing steps=6' 'Solver/Recombined steps=1'
       printf '  | '
       run "$@" "Material/Poisson ratio=$nu" \
-        "Material/Volumetric strain=$strain"
+        "Material/Volumetric strain=$strain" 'Solver/Recombined steps=1'
       printf '  | '
       run "$@" "Material/Poisson ratio=$nu" \
         "Material/Volumetric strain=$strain" 'Solver/Recombined steps=5'
+      echo
+    done
+  done
+}
+
+# Of the last three rows.
+levels() {
+  "$@" Output/Fields=false Output/Verbosity=levels Refinement/Estimate\ error=false \
+    "Output/Directory=$directory" |
+    awk '$1 ~ /^[0-9]+$/ && NF >= 10 {row[++n] = sprintf("%4d %7.2f s", $7, $10)}
+         /^No (convergence|solution)/ {failed = 1}
+         END {if (failed) printf "fails";
+              else printf "%s  | %s  | %s", row[n - 2], row[n - 1], row[n]}'
+}
+
+as_it_comes() {
+  echo
+  echo "$1"
+  shift
+  for nu in 0.3 0.49 0.499 0.4999; do
+    for strain in pointwise mean; do
+      printf '%6s  %-9s  ' $nu $strain
+      levels "$@" "Material/Poisson ratio=$nu" \
+        "Material/Volumetric strain=$strain"
       echo
     done
   done
@@ -61,3 +86,9 @@ table "linear: cube bonded to its support, 14739 dofs" \
   'Contact/Boundary id=-1' Obstacle/Kind=none
 table "friction: cube, F = 0.4, 14739 dofs" \
   "$program_3d" "$scenes_3d/block.prm" Refinement/Levels=3
+echo
+echo "cycles and seconds, with safeguards"
+as_it_comes "friction: block, F = 0.4, 33282, 132098 and 526338 dofs" \
+  "$program_2d" "$scenes_2d/block.prm" Refinement/Levels=7
+as_it_comes "friction: cube, F = 0.4, 2187, 14739 and 107811 dofs" \
+  "$program_3d" "$scenes_3d/block.prm" Refinement/Levels=4
