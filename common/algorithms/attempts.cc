@@ -118,7 +118,8 @@ namespace Friction
   void
   SafeguardedSolver<dim>::Attempts::start_anew_unless_guess_is_better()
   {
-    if (all.attempts.size() > 1 || is_newton || !solver.is_finite(search))
+    if ((all.attempts.size() > 1 && !has_gone_on) || is_newton ||
+        !solver.is_finite(search))
       start_anew();
   }
 
@@ -143,27 +144,34 @@ namespace Friction
 
 
 
-  // Volumes that hardly change make any correction slow, those of Trilinos more
-  // than ours: as long as it gets on, nothing else is better.
+  // Volumes that hardly change make any correction slow, and those of Trilinos
+  // are dearer. So Algorithm 3 goes on from the best iterate, as long as an
+  // attempt has made the violation ten times smaller.
   template <int dim>
   void
   SafeguardedSolver<dim>::Attempts::go_on_with_algorithm()
   {
     constexpr double progress = .1;
     double           before   = std::numeric_limits<double>::infinity();
-    while (!report.converged && smallest_violation <= progress * before &&
+    while (!report.converged && smallest_violation < progress * before &&
            solver.budget->begin_attempt())
       {
         before       = smallest_violation;
+        has_gone_on  = true;
         search.u     = best;
         search.state = best_state;
         attempt(algorithm + " once more", [&]() {
           return solver.algorithm_to_the_end(
             solver.iteration, solver.later_settings(search.accuracy), search);
         });
+        if (report.converged)
+          solver.next_method = Method::algorithm;
       }
-    if (report.converged)
-      solver.next_method = Method::algorithm;
+    if (has_gone_on && !report.converged)
+      {
+        search.u     = best;
+        search.state = best_state;
+      }
   }
 
 

@@ -39,7 +39,8 @@ namespace Friction
 
     // What has been tried.
     bool is_condensed = false, is_aggregate = false, is_algebraic = false,
-         is_newton = false, is_continued = false, is_mixed = false;
+         is_newton = false, is_continued = false, is_mixed = false,
+         has_gone_on = false;
 
     // Whether there is anything left to do and to try it with; notes that it is
     // being tried.

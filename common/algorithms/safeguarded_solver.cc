@@ -13,19 +13,22 @@ namespace Friction
 {
   namespace
   {
-    // How many cycles contact nodes alone may take the time of, where materials
-    // jump or are nearly incompressible, or most nodes are in lines: if the
-    // solution is to be as exact as its mesh; and to a given tolerance, which
-    // takes many cycles there, and those of a nearly incompressible material
-    // the time of two or three. Where others have failed, as many as are ever
-    // worth while.
-    constexpr double cycles_to_expect = 24;
+    // How many cycles of an easy material contact nodes alone may take the time
+    // of, where materials jump or are nearly incompressible, or most nodes are
+    // in lines. If the solution is to be as exact as its mesh:
+    template <int dim>
+    constexpr double cycles_to_expect = (dim == 2 ? 12 : 24);
 
+    // To a given tolerance, with the ratio of Lame's constants that the
+    // material has; cycles are the more, and the dearer, the less compressible
+    // it is, see doc/benchmark/incompressible.txt. Where others have failed, it
+    // is as many as are ever worth while.
     template <int dim>
     double
     cycles_to_the_end(const double lame_ratio)
     {
-      return std::max(dim == 2 ? 60. : 36., 5. * std::sqrt(lame_ratio));
+      return std::max(dim == 2 ? 60. : 36.,
+                      5. * std::sqrt(std::max(0., lame_ratio)));
     }
 
     // And for any material, to a given tolerance; fewer in three dimensions,
@@ -200,12 +203,16 @@ namespace Friction
           (others_have_failed && !much_friction()) || materials_do_jump() ||
           mostly_lines_in_space()))
       return false;
-    const double n_cycles = (others_have_failed ? Condensed::most_cycles
-                               : settings.energy_tolerance > 0.
-                               ? cycles_to_expect
-                               : cycles_to_the_end<dim>(settings.lame_ratio));
-    return contact_nodes_alone_take_less(
-      search, std::min(n_cycles, Condensed::most_cycles));
+    double n_cycles = Condensed::most_cycles;
+    if (!others_have_failed)
+      n_cycles = std::min(n_cycles,
+                          settings.energy_tolerance > 0.
+                            ? cycles_to_expect<dim>
+                            : cycles_to_the_end<dim>(settings.lame_ratio));
+    // What fails there is left to Newton's method there.
+    if (!others_have_failed && much_friction())
+      n_cycles = std::min(n_cycles, cycles_of_newton);
+    return contact_nodes_alone_take_less(search, n_cycles);
   }
 
 

@@ -41,7 +41,9 @@ namespace Friction
    * 4. contact nodes alone, if that takes no longer than some hundreds of
    *    cycles, whatever the material where there is not much friction; and
    *    then, if 2. was given up early because there was 3. to try, 2. once
-   *    more, with all its time;
+   *    more, with all its time; and where a material is nearly incompressible,
+   *    2. goes on from the best iterate, as long as an attempt makes the
+   *    violation of the law ten times smaller;
    * 5. the algorithm of the settings with AlgebraicCorrection, where there is
    *    not much friction: then coarse levels are the trouble, for example
    *    because cells are short in two of three directions;
@@ -74,7 +76,8 @@ namespace Friction
    * call of solve() and, by SolverReport::next_method, on the next mesh, 3.
    * before 5. if that has not failed on the same mesh; but Newton's method only
    * with much friction or on contact nodes alone. If contact nodes alone have,
-   * and would take too long on the next mesh, 5. follows there at once.
+   * and would take too long on the next mesh, 5. follows there at once, unless
+   * a material is nearly incompressible.
    */
   template <int dim>
   class SafeguardedSolver

@@ -96,8 +96,8 @@ namespace Friction
      * @param backwards  whether the caller takes rows in descending order and
      *                   changes the value of each: the sum then ends with
      *                   the values that were changed last, so that the
-     *                   processor can begin with it before it has them. Either
-     *                   way the sum differs in rounding only.
+     *                   processor can begin with it before it has them. The
+     *                   two sums differ in rounding only.
      */
     template <int dim>
     NodeValue<dim> times(const BlockRows<dim> &A,

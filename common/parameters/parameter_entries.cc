@@ -516,9 +516,10 @@ namespace Friction
        choice("never|where cycles are many|where quicker"),
        "Where the safeguards solve the problem on contact nodes alone: all "
        "other nodes are eliminated first, once and for all. 'where cycles are "
-       "many': on small meshes where materials jump or are nearly "
-       "incompressible, where most cells are stretched in 3D, or where others "
-       "have failed. 'where quicker': also on meshes of some hundreds of "
+       "many': where materials jump or are nearly incompressible, where most "
+       "cells are stretched in 3D, or where others have failed, if it takes no "
+       "longer than these would. 'where quicker': also on meshes of some "
+       "hundreds of "
        "unknowns, up to a few thousand, where that takes no longer than the "
        "cycles to a given tolerance, as the inner tolerance or on the first "
        "mesh."},
