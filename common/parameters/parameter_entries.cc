@@ -489,8 +489,8 @@ namespace Friction
        "automatic",
        make(StepsOrAutomatic(0, 20)),
        "Number of previous steps that a truncated coarse correction is "
-       "recombined with; 0 for none. 'automatic': 1, or 5 if a material is "
-       "nearly incompressible."},
+       "recombined with; 0 for none. 'automatic': 1, or 5 from a Poisson "
+       "ratio of 0.498 on."},
       {"Solver",
        "Outer damping",
        "1",

@@ -851,7 +851,7 @@ namespace Friction
         values.integer("Solver/Maximum outer iterations");
       solver.maximum_step_length = values.number("Solver/Maximum step length");
       solver.recombined_steps    = values.steps(
-        "Solver/Recombined steps", solver.nearly_incompressible() ? 5 : 1);
+        "Solver/Recombined steps", enough_recombined_steps(solver.lame_ratio));
       solver.outer_damping = values.number("Solver/Outer damping");
       solver.mixed_outer_iterations =
         values.integer("Solver/Mixed outer iterations");

@@ -18,6 +18,16 @@ namespace Friction
 
 
 
+  // More than one pays where tens of cycles are left once phases have settled.
+  // The limit is a Poisson ratio of 0.498.
+  unsigned int
+  enough_recombined_steps(const double lame_ratio)
+  {
+    return lame_ratio > 248. ? 5 : 1;
+  }
+
+
+
   bool
   SolverSettings::nearly_incompressible() const
   {
