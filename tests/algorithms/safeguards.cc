@@ -224,6 +224,7 @@ namespace test_safeguards
                                             "Material/Volumetric strain=mean",
                                             "Refinement/Initial refinements=4",
                                             "Solver/Inner tolerance=1e-9",
+                                            "Solver/Maximum cycles=80",
                                             "Solver/Condensation=never"});
     VectorType         u, v;
     ContactState       state(0, false), other(0, false);
