@@ -116,6 +116,16 @@ namespace Friction
 
   template <int dim>
   void
+  SafeguardedSolver<dim>::Attempts::start_from_best()
+  {
+    search.u     = best;
+    search.state = best_state;
+  }
+
+
+
+  template <int dim>
+  void
   SafeguardedSolver<dim>::Attempts::start_anew_unless_guess_is_better()
   {
     if ((all.attempts.size() > 1 && !has_gone_on) || is_newton ||
@@ -156,10 +166,9 @@ namespace Friction
     while (!report.converged && smallest_violation < progress * before &&
            solver.budget->begin_attempt())
       {
-        before       = smallest_violation;
-        has_gone_on  = true;
-        search.u     = best;
-        search.state = best_state;
+        before      = smallest_violation;
+        has_gone_on = true;
+        start_from_best();
         attempt(algorithm + " once more", [&]() {
           return solver.algorithm_to_the_end(
             solver.iteration, solver.later_settings(search.accuracy), search);
@@ -168,10 +177,7 @@ namespace Friction
           solver.next_method = Method::algorithm;
       }
     if (has_gone_on && !report.converged)
-      {
-        search.u     = best;
-        search.state = best_state;
-      }
+      start_from_best();
   }
 
 
@@ -279,8 +285,7 @@ namespace Friction
   {
     if (!coulomb || !begin(is_mixed, is_last))
       return;
-    search.u     = best;
-    search.state = best_state;
+    start_from_best();
     attempt("Algorithm 2 with mixed normal forces" + where_newton_is(),
             [&]() { return solver.mixed_algorithm_2(search); });
   }
@@ -401,8 +406,7 @@ namespace Friction
     // attempt that has been thrown away.
     if (!report.converged)
       {
-        search.u     = best;
-        search.state = best_state;
+        start_from_best();
         certify(report, solver.iteration.functional(), search.u, search.state);
       }
     report.cycles      = all.cycles;

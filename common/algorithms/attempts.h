@@ -50,6 +50,7 @@ namespace Friction
     void attempt(const std::string &name, const MethodOfSolver &method);
 
     void start_anew();
+    void start_from_best();
 
     // A step of Newton's method may have gone into the obstacle; phases that
     // Algorithm 3 alone has begun to find are a good guess.

@@ -205,13 +205,15 @@ namespace Friction
       return false;
     double n_cycles = Condensed::most_cycles;
     if (!others_have_failed)
-      n_cycles = std::min(n_cycles,
-                          settings.energy_tolerance > 0.
-                            ? cycles_to_expect<dim>
-                            : cycles_to_the_end<dim>(settings.lame_ratio));
-    // What fails there is left to Newton's method there.
-    if (!others_have_failed && much_friction())
-      n_cycles = std::min(n_cycles, cycles_of_newton);
+      {
+        n_cycles = std::min(n_cycles,
+                            settings.energy_tolerance > 0.
+                              ? cycles_to_expect<dim>
+                              : cycles_to_the_end<dim>(settings.lame_ratio));
+        // What fails there is left to Newton's method there.
+        if (much_friction())
+          n_cycles = std::min(n_cycles, cycles_of_newton);
+      }
     return contact_nodes_alone_take_less(search, n_cycles);
   }
 
