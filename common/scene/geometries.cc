@@ -1,4 +1,5 @@
 #include <common/printable.h>
+#include <common/scene/extruded_manifold.h>
 #include <common/scene/geometries.h>
 
 #include <deal.II/base/numbers.h>
@@ -455,6 +456,19 @@ namespace Friction
 
 
     void
+    make_half_disc(const double radius, Triangulation<2> &triangulation)
+    {
+      const double tolerance = 1e-10 * radius;
+      create(
+        half_disc(radius),
+        [=](const Point<2> &p) { return p[1] > -tolerance ? 1 : 0; },
+        1,
+        triangulation);
+    }
+
+
+
+    void
     make_round_body(const Parameters::Scene &scene,
                     const std::string       &where,
                     Triangulation<2>        &triangulation)
@@ -466,12 +480,7 @@ namespace Friction
                              ? "half cylinder"
                              : "half ball",
                            3);
-      const double tolerance = 1e-10 * scene.radius;
-      create(
-        half_disc(scene.radius),
-        [=](const Point<2> &p) { return p[1] > -tolerance ? 1 : 0; },
-        1,
-        triangulation);
+      make_half_disc(scene.radius, triangulation);
     }
 
 
@@ -519,6 +528,54 @@ namespace Friction
           [=](const Point<3> &p) { return p[2] > -tolerance ? 1 : 0; },
           numbers::invalid_boundary_id,
           triangulation);
+    }
+
+
+
+    template <int dim>
+    void
+    interpolate_ring(Triangulation<dim> &triangulation)
+    {
+      TransfiniteInterpolationManifold<dim> ring;
+      ring.initialize(triangulation);
+      triangulation.set_manifold(ring_manifold_id, ring);
+    }
+
+
+
+    void
+    set_ring_manifold(const Parameters::Scene &,
+                      Triangulation<2> &triangulation)
+    {
+      interpolate_ring(triangulation);
+    }
+
+
+
+    // Of a body along the z axis, that of its section, turned as the body is.
+    void
+    set_ring_manifold(const Parameters::Scene &scene,
+                      Triangulation<3>        &triangulation)
+    {
+      if (scene.geometry == GeometryKind::half_ball)
+        {
+          interpolate_ring(triangulation);
+          return;
+        }
+      const auto section = std::make_shared<Triangulation<2>>();
+      if (scene.geometry == GeometryKind::half_cylinder)
+        make_half_disc(scene.radius, *section);
+      else
+        create(
+          disc(scene.radius),
+          [](const Point<2> &) { return 0; },
+          numbers::invalid_boundary_id,
+          *section);
+      GridTools::rotate(scene.rotation_angle * numbers::PI / 180., *section);
+      set_round_manifold(scene, *section);
+      interpolate_ring(*section);
+      triangulation.set_manifold(ring_manifold_id,
+                                 ExtrudedManifold(section, ring_manifold_id));
     }
 
 
@@ -629,9 +686,7 @@ namespace Friction
     if (scene.geometry == GeometryKind::cylinder &&
         scene.coarse_grid == CoarseGrid::one_cell)
       return;
-    TransfiniteInterpolationManifold<dim> ring;
-    ring.initialize(triangulation);
-    triangulation.set_manifold(ring_manifold_id, ring);
+    set_ring_manifold(scene, triangulation);
   }
 
 

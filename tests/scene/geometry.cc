@@ -1,5 +1,7 @@
 // The meshes of a scene: the half disc in numbers, its symmetry, its shape
-// after refinement; distortion and rotation of a rectangle; a mesh from a file.
+// after refinement; cylinders, whose refined cells are found in their section,
+// against those that deal.II finds in space; distortion and rotation of a
+// rectangle; a mesh from a file.
 
 #include <common/scene/scene.h>
 
@@ -9,6 +11,7 @@
 
 #include <deal.II/grid/grid_out.h>
 #include <deal.II/grid/grid_tools.h>
+#include <deal.II/grid/manifold_lib.h>
 
 #include <fstream>
 #include <iostream>
@@ -112,6 +115,43 @@ namespace test_geometry
 
 
 
+  // Cells of the ring have manifold id 1. Cells are refined everywhere, and
+  // then every third one, so that there are all kinds of faces.
+  void
+  extruded(std::vector<std::string> overrides)
+  {
+    overrides.push_back("Boundary conditions/Displacement=1: 0, 0, 0");
+    const Scene<3>   scene(parameters(overrides));
+    Triangulation<3> mesh, expected;
+    scene.make_coarse_mesh(mesh);
+    scene.make_coarse_mesh(expected);
+    TransfiniteInterpolationManifold<3> in_space;
+    in_space.initialize(expected);
+    expected.set_manifold(1, in_space);
+
+    for (Triangulation<3> *triangulation : {&mesh, &expected})
+      {
+        triangulation->refine_global();
+        unsigned int n = 0;
+        for (const auto &cell : triangulation->active_cell_iterators())
+          if (++n % 3 == 0)
+            cell->set_refine_flag();
+        triangulation->execute_coarsening_and_refinement();
+      }
+    double largest = 0.;
+    for (unsigned int v = 0; v < mesh.n_vertices(); ++v)
+      largest = std::max(
+        largest, mesh.get_vertices()[v].distance(expected.get_vertices()[v]));
+    std::cout << mesh.n_active_cells() << " cells, ids";
+    for (const auto id : mesh.get_manifold_ids())
+      std::cout << ' ' << static_cast<int>(id);
+    std::cout << ", vertices where they are in space "
+              << (largest < 1e-12 ? "yes" : std::to_string(largest))
+              << std::endl;
+  }
+
+
+
   template <int dim>
   void
   print(const std::vector<std::string> &overrides)
@@ -170,6 +210,9 @@ TEST(geometry)
   std::cout.precision(4);
 
   half_disc();
+  extruded({"Scene/Geometry=cylinder"});
+  extruded({"Scene/Geometry=cylinder", "Scene/Rotation angle=20"});
+  extruded({"Scene/Geometry=half cylinder", "Scene/Layers=1"});
   print<2>({"Scene/Subdivisions=2, 2", "Scene/Size=3, 1"});
   print<2>({"Scene/Subdivisions=2, 2", "Scene/Distortion=0.3"});
   print<2>({"Scene/Rotation angle=90"});

@@ -1,0 +1,41 @@
+#ifndef friction_scene_extruded_manifold_h
+#define friction_scene_extruded_manifold_h
+
+#include <deal.II/grid/manifold.h>
+#include <deal.II/grid/tria.h>
+
+#include <memory>
+
+namespace Friction
+{
+  using namespace dealii;
+
+  /**
+   * A manifold of a plane mesh, drawn along the z axis. Where it interpolates
+   * inside of coarse cells (deal.II's TransfiniteInterpolationManifold), it
+   * gives the points that deal.II finds in the cells of three dimensions over
+   * that mesh, but looks for them in the section, where that takes a fraction
+   * of the time: of the vertices that refinement makes, the middles of a cell
+   * and of its faces along the axis lie above points of the section that are
+   * there already.
+   */
+  class ExtrudedManifold : public Manifold<3>
+  {
+  public:
+    /** The manifold of that @p id of @p section, which is not to change. */
+    ExtrudedManifold(std::shared_ptr<const Triangulation<2>> section,
+                     const types::manifold_id                id);
+
+    std::unique_ptr<Manifold<3>> clone() const override;
+
+    Point<3>
+    get_new_point(const ArrayView<const Point<3>> &points,
+                  const ArrayView<const double>   &weights) const override;
+
+  private:
+    std::shared_ptr<const Triangulation<2>> section;
+    types::manifold_id                      id;
+  };
+} // namespace Friction
+
+#endif
