@@ -21,15 +21,15 @@ namespace Friction
 {
   namespace
   {
-    // The round part of the boundary, and the cells between it and the core,
-    // which pass from the one shape to the other.
+    // The round part of the boundary, and the cells along it, which pass from
+    // its shape to straight sides.
     constexpr types::manifold_id round_manifold_id = 0;
     constexpr types::manifold_id ring_manifold_id  = 1;
 
 
 
-    // Vertices and cells before they become a triangulation. Cells of the core
-    // have the flat manifold id, all others that of the ring.
+    // Vertices and cells before they become a triangulation. Cells with
+    // straight sides have the flat manifold id, all others that of the ring.
     template <int dim>
     struct Mesh
     {
@@ -52,12 +52,13 @@ namespace Friction
 
     // The lower half disc as an O-grid: a core of 4 x 4 cells and two rings
     // around its left, lower and right sides, 51 vertices and 40 cells
-    // altogether, symmetric about x = 0. The positions of the interior vertices
-    // minimise the sum over all corners of all cells of the sixth power of the
-    // deviation from a square, |J|^2/(2 det J), with the tangent in place of
-    // the chord along the arc. However fine the mesh, angles stay between 59
-    // and 121 degrees; three cells meet in each lower corner of the core, which
-    // leaves nothing below 120, and 60 opposite to it, to be hoped for.
+    // altogether, symmetric about x = 0; curved sides has the outer ring alone.
+    // The positions of the interior vertices minimise the sum over all corners
+    // of all cells of the sixth power of the deviation from a square,
+    // |J|^2/(2 det J), with the tangent in place of the chord along the arc.
+    // However fine the mesh, angles stay between 59 and 121 degrees; three
+    // cells meet in each lower corner of the core, which leaves nothing below
+    // 120, and 60 opposite to it, to be hoped for.
     Mesh<2>
     half_disc(const double radius)
     {
@@ -124,7 +125,7 @@ namespace Friction
                          ring_vertex(r + 1, k + 1),
                          ring_vertex(r, k),
                          ring_vertex(r, k + 1)},
-                        ring_manifold_id);
+                        r == 0 ? numbers::flat_manifold_id : ring_manifold_id);
       GridTools::consistently_order_cells(mesh.cells);
       return mesh;
     }
@@ -312,8 +313,8 @@ namespace Friction
       triangulation.create_triangulation(
         mesh.vertices, mesh.cells, SubCellData());
 
-      // The ring follows the round boundary, the core is left straight; the
-      // latter has the last word about what they share.
+      // The ring follows the round boundary, other cells are left straight;
+      // they have the last word about what they share.
       for (const types::manifold_id id :
            {ring_manifold_id, numbers::flat_manifold_id})
         for (const auto &cell : triangulation.active_cell_iterators())
