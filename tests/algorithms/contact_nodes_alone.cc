@@ -99,19 +99,9 @@ namespace test_contact_nodes_alone
 
         check_everywhere(relative_distance(v, u) < 1e-8,
                          "  the displacement is the same");
-        double largest = 0, worst = 0;
-        bool   same = true;
-        for (unsigned int p = 0; p < state.size(); ++p)
-          {
-            same = same && state.in_contact(p) == other.in_contact(p) &&
-              state.sticks(p) == other.sticks(p);
-            largest = std::max(largest, state.normal_force(p));
-            worst   = std::max(
-              worst, std::abs(state.normal_force(p) - other.normal_force(p)));
-          }
-        largest = Utilities::MPI::max(largest, MPI_COMM_WORLD);
-        check_everywhere(same, "  phases are");
-        check_everywhere(worst <= 1e-6 * largest, "  and normal forces");
+        check_everywhere(phases_agree(state, other), "  phases are");
+        check_everywhere(relative_distance_of_forces(other, state) <= 1e-6,
+                         "  and normal forces");
 
         const VectorType before = v;
         check_everywhere(solve().cycles.size() <= 2, "  nothing is left to do");
@@ -243,15 +233,9 @@ namespace test_contact_nodes_alone
             (k == 0 ? " that touches nowhere" : " that touches"));
         memory[k] = condensed.memory_consumption();
       }
-    VectorType difference = u[0];
-    difference -= u[1];
-    check_everywhere(difference.linfty_norm() < 1e-9 * u[1].linfty_norm(),
+    check_everywhere(relative_distance(u[0], u[1]) < 1e-9,
                      "  displacements are the same");
-    bool same = true;
-    for (unsigned int p = 0; p < state[0].size(); ++p)
-      same = same && state[0].in_contact(p) == state[1].in_contact(p) &&
-        state[0].sticks(p) == state[1].sticks(p);
-    check_everywhere(same, "  phases are");
+    check_everywhere(phases_agree(state[0], state[1]), "  phases are");
     const bool fewer = memory[0] < memory[1];
     check_everywhere(fewer == (name == "a long block on one of its ends"),
                      std::string("  ") + (fewer ? "" : "not ") +

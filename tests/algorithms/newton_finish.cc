@@ -112,19 +112,8 @@ namespace test_newton_finish
     check_everywhere(a.report.certificate.largest() < 1e-7, "  certified");
     check_everywhere(relative_distance(a.u, b.u) < 1e-7,
                      "  displacements agree");
-    bool   same    = true;
-    double largest = 0, worst = 0;
-    for (unsigned int p = 0; p < a.state.size(); ++p)
-      {
-        same = same && a.state.in_contact(p) == b.state.in_contact(p) &&
-          a.state.sticks(p) == b.state.sticks(p);
-        largest = std::max(largest, b.state.normal_force(p));
-        worst   = std::max(
-          worst, std::abs(a.state.normal_force(p) - b.state.normal_force(p)));
-      }
-    check_everywhere(same, "  phases do");
-    check_everywhere(worst <
-                       1e-5 * Utilities::MPI::max(largest, MPI_COMM_WORLD),
+    check_everywhere(phases_agree(a.state, b.state), "  phases do");
+    check_everywhere(relative_distance_of_forces(a.state, b.state) < 1e-5,
                      "  normal forces do");
   }
 

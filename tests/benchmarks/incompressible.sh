@@ -12,13 +12,21 @@ scenes_3d=$4
 directory=$(mktemp -d)
 trap 'rm -rf "$directory"' EXIT
 
-# Of the last row of the run's table.
-run() {
-  "$@" Solver/Safeguards=false Output/Fields=false Output/Verbosity=levels Refinement/Estimate\ error=false \
-    "Output/Directory=$directory" 'Solver/Maximum cycles=200' |
-    awk '$1 ~ /^[0-9]+$/ && NF >= 10 {cycles = $7; rate = $8; seconds = $10}
+# The rows of the run's table: cycles, contraction and seconds of each level. None
+# if a level was not solved.
+rows() {
+  "$@" Output/Fields=false Output/Verbosity=levels \
+    'Refinement/Estimate error=false' "Output/Directory=$directory" |
+    awk '$1 ~ /^[0-9]+$/ && NF >= 10 {row[++n] = $7 " " $8 " " $10}
          /^No (convergence|solution)/ {failed = 1}
-         END {if (failed) printf "       fails       ";
+         END {for (k = 1; k <= n && !failed; ++k) print row[k]}'
+}
+
+# Of the last row.
+run() {
+  rows "$@" Solver/Safeguards=false 'Solver/Maximum cycles=200' |
+    awk '{cycles = $1; rate = $2; seconds = $3}
+         END {if (!NR) printf "       fails       ";
               else printf "%4d  %5.3f %6.2f s", cycles, rate, seconds}'
 }
 
@@ -47,12 +55,10 @@ table() {
 
 # Of the last three rows.
 levels() {
-  "$@" Output/Fields=false Output/Verbosity=levels Refinement/Estimate\ error=false \
-    "Output/Directory=$directory" |
-    awk '$1 ~ /^[0-9]+$/ && NF >= 10 {row[++n] = sprintf("%4d %7.2f s", $7, $10)}
-         /^No (convergence|solution)/ {failed = 1}
-         END {if (failed) printf "fails";
-              else printf "%s  | %s  | %s", row[n - 2], row[n - 1], row[n]}'
+  rows "$@" |
+    awk '{row[NR] = sprintf("%4d %7.2f s", $1, $3)}
+         END {if (!NR) printf "fails";
+              else printf "%s  | %s  | %s", row[NR - 2], row[NR - 1], row[NR]}'
 }
 
 as_it_comes() {

@@ -1,6 +1,7 @@
 #ifndef friction_tests_support_discretized_h
 #define friction_tests_support_discretized_h
 
+#include <common/contact/contact_state.h>
 #include <common/discretization/discretization.h>
 #include <common/iteration/monotone_smoother.h>
 
@@ -53,6 +54,36 @@ namespace Tests
     VectorType difference(u);
     difference -= v;
     return difference.linfty_norm() / v.linfty_norm();
+  }
+
+
+
+  /** Whether the same nodes of this process are in contact, and stick. */
+  inline bool
+  phases_agree(const ContactState &a, const ContactState &b)
+  {
+    for (unsigned int p = 0; p < a.size(); ++p)
+      if (a.in_contact(p) != b.in_contact(p) || a.sticks(p) != b.sticks(p))
+        return false;
+    return true;
+  }
+
+
+
+  /** The largest difference of two sets of normal forces, in parts of the
+   * largest one of the second. Collective. */
+  inline double
+  relative_distance_of_forces(const ContactState &a, const ContactState &b)
+  {
+    double largest = 0., worst = 0.;
+    for (unsigned int p = 0; p < a.size(); ++p)
+      {
+        largest = std::max(largest, b.normal_force(p));
+        worst =
+          std::max(worst, std::abs(a.normal_force(p) - b.normal_force(p)));
+      }
+    return Utilities::MPI::max(worst, MPI_COMM_WORLD) /
+      Utilities::MPI::max(largest, MPI_COMM_WORLD);
   }
 
 
