@@ -146,7 +146,7 @@ namespace test_geometry
     for (const auto id : mesh.get_manifold_ids())
       std::cout << ' ' << static_cast<int>(id);
     std::cout << ", vertices where they are in space "
-              << (largest < 1e-12 ? "yes" : std::to_string(largest))
+              << (largest < 1e-10 ? "yes" : std::to_string(largest))
               << std::endl;
   }
 
