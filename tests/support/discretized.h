@@ -71,7 +71,7 @@ namespace Tests
 
 
   /** The largest difference of two sets of normal forces, in parts of the
-   * largest one of the second. Collective. */
+   * largest one of the second, if it has any. Collective. */
   inline double
   relative_distance_of_forces(const ContactState &a, const ContactState &b)
   {
@@ -82,8 +82,9 @@ namespace Tests
         worst =
           std::max(worst, std::abs(a.normal_force(p) - b.normal_force(p)));
       }
-    return Utilities::MPI::max(worst, MPI_COMM_WORLD) /
-      Utilities::MPI::max(largest, MPI_COMM_WORLD);
+    worst   = Utilities::MPI::max(worst, MPI_COMM_WORLD);
+    largest = Utilities::MPI::max(largest, MPI_COMM_WORLD);
+    return largest > 0. ? worst / largest : worst;
   }
 
 
