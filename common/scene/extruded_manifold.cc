@@ -9,11 +9,11 @@ namespace Friction
 {
   namespace
   {
-    // Nearer to each other than that part of their distances from other points,
-    // points of the section are the same.
+    // Points of the section are the same if they are nearer to each other than
+    // this part of the largest distance, in space, from the first point.
     constexpr double relative_rounding = 1e-10;
 
-    // A weight that is a sum of halves and quarters which cancel.
+    // Sums of weights up to this count as zero.
     constexpr double no_weight = 1e-12;
   } // namespace
 

@@ -11,10 +11,12 @@ namespace Friction
   using namespace dealii;
 
   /**
-   * A manifold of a plane mesh, drawn along the z axis. Where it interpolates
-   * inside of coarse cells (deal.II's TransfiniteInterpolationManifold), it
-   * gives the points that deal.II finds in the cells of three dimensions over
-   * that mesh, but looks for them in the section, where that takes a fraction
+   * A manifold of a plane mesh, the section, drawn along the z axis: for bodies
+   * whose cells are those of the section between planes of constant z, and
+   * whose other manifolds are drawn along the axis like this one. If the
+   * manifold interpolates inside of coarse cells (deal.II's
+   * TransfiniteInterpolationManifold), new points are those that deal.II would
+   * find in the cells of the body. They are found in the section, in a fraction
    * of the time: of the vertices that refinement makes, the middles of a cell
    * and of its faces along the axis lie above points of the section that are
    * there already.
@@ -22,7 +24,8 @@ namespace Friction
   class ExtrudedManifold : public Manifold<3>
   {
   public:
-    /** The manifold of that @p id of @p section, which is not to change. */
+    /** The manifold @p id of @p section, which must not be changed afterwards.
+     */
     ExtrudedManifold(std::shared_ptr<const Triangulation<2>> section,
                      const types::manifold_id                id);
 

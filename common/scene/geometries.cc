@@ -52,7 +52,7 @@ namespace Friction
 
     // The lower half disc as an O-grid: a core of 4 x 4 cells and two rings
     // around its left, lower and right sides, 51 vertices and 40 cells
-    // altogether, symmetric about x = 0; curved sides has the outer ring alone.
+    // altogether, symmetric about x = 0; only the outer ring has curved sides.
     // The positions of the interior vertices minimise the sum over all corners
     // of all cells of the sixth power of the deviation from a square,
     // |J|^2/(2 det J), with the tangent in place of the chord along the arc.
@@ -456,13 +456,28 @@ namespace Friction
 
 
 
-    void
-    make_half_disc(const double radius, Triangulation<2> &triangulation)
+    // The half disc, and the cross-sections of both cylinders.
+    Mesh<2>
+    section_of(const Parameters::Scene &scene)
     {
-      const double tolerance = 1e-10 * radius;
+      if (scene.geometry != GeometryKind::cylinder)
+        return half_disc(scene.radius);
+      return scene.coarse_grid == CoarseGrid::one_cell
+        ? inscribed_square(scene.radius)
+        : disc(scene.radius);
+    }
+
+
+
+    void
+    make_section(const Parameters::Scene &scene,
+                 Triangulation<2>        &triangulation)
+    {
+      const bool   is_half   = scene.geometry != GeometryKind::cylinder;
+      const double tolerance = 1e-10 * scene.radius;
       create(
-        half_disc(radius),
-        [=](const Point<2> &p) { return p[1] > -tolerance ? 1 : 0; },
+        section_of(scene),
+        [=](const Point<2> &p) { return is_half && p[1] > -tolerance ? 1 : 0; },
         1,
         triangulation);
     }
@@ -481,7 +496,7 @@ namespace Friction
                              ? "half cylinder"
                              : "half ball",
                            3);
-      make_half_disc(scene.radius, triangulation);
+      make_section(scene, triangulation);
     }
 
 
@@ -503,19 +518,19 @@ namespace Friction
         throw no_such_body(where, "half disc", 2);
       else if (scene.geometry == GeometryKind::cylinder)
         create(
-          scene.coarse_grid == CoarseGrid::one_cell
-            ? extrude(inscribed_square(R), length, 1)
-            : extrude(
-                disc(R),
-                length,
-                static_cast<unsigned int>(n_layers(scene, width_in_disc * R))),
+          extrude(
+            section_of(scene),
+            length,
+            scene.coarse_grid == CoarseGrid::one_cell
+              ? 1
+              : static_cast<unsigned int>(n_layers(scene, width_in_disc * R))),
           [=](const Point<3> &p) { return end_id(p, 1); },
           numbers::invalid_boundary_id,
           triangulation);
       else if (scene.geometry == GeometryKind::half_cylinder)
         create(
           extrude(
-            half_disc(R),
+            section_of(scene),
             length,
             static_cast<unsigned int>(n_layers(scene, width_in_half_disc * R))),
           [=](const Point<3> &p) {
@@ -544,39 +559,27 @@ namespace Friction
 
 
 
-    void
-    set_ring_manifold(const Parameters::Scene &,
-                      Triangulation<2> &triangulation)
-    {
-      interpolate_ring(triangulation);
-    }
-
-
-
-    // Of a body along the z axis, that of its section, turned as the body is.
+    // Of a body along the z axis it is that of the section, turned as the body
+    // is.
+    template <int dim>
     void
     set_ring_manifold(const Parameters::Scene &scene,
-                      Triangulation<3>        &triangulation)
+                      Triangulation<dim>      &triangulation)
     {
-      if (scene.geometry == GeometryKind::half_ball)
-        {
-          interpolate_ring(triangulation);
-          return;
-        }
-      const auto section = std::make_shared<Triangulation<2>>();
-      if (scene.geometry == GeometryKind::half_cylinder)
-        make_half_disc(scene.radius, *section);
-      else
-        create(
-          disc(scene.radius),
-          [](const Point<2> &) { return 0; },
-          numbers::invalid_boundary_id,
-          *section);
-      GridTools::rotate(scene.rotation_angle * numbers::PI / 180., *section);
-      set_round_manifold(scene, *section);
-      interpolate_ring(*section);
-      triangulation.set_manifold(ring_manifold_id,
-                                 ExtrudedManifold(section, ring_manifold_id));
+      if constexpr (dim == 3)
+        if (scene.geometry != GeometryKind::half_ball)
+          {
+            const auto section = std::make_shared<Triangulation<2>>();
+            make_section(scene, *section);
+            GridTools::rotate(scene.rotation_angle * numbers::PI / 180.,
+                              *section);
+            set_round_manifold(scene, *section);
+            interpolate_ring(*section);
+            triangulation.set_manifold(
+              ring_manifold_id, ExtrudedManifold(section, ring_manifold_id));
+            return;
+          }
+      interpolate_ring(triangulation);
     }
 
 
@@ -638,9 +641,10 @@ namespace Friction
         case GeometryKind::cylinder:
           return scene.coarse_grid == CoarseGrid::one_cell
             ? 1.
-            : disc(R).cells.size() * n_layers(scene, width_in_disc * R);
+            : section_of(scene).cells.size() *
+              n_layers(scene, width_in_disc * R);
         case GeometryKind::half_cylinder:
-          return half_disc(R).cells.size() *
+          return section_of(scene).cells.size() *
             n_layers(scene, width_in_half_disc * R);
         default:
           return 0.;

@@ -35,8 +35,9 @@ namespace Friction
   /**
    * Attach the manifolds that belong to the ids set by make_geometry(), so that
    * refined meshes follow curved boundaries exactly: new vertices lie on them,
-   * and the manifold knows the normal there. Bodies may have been turned around
-   * the origin, in three dimensions around the z axis.
+   * and the manifold knows the normal there. Bodies must have been turned by
+   * 'Scene/Rotation angle' around the origin, in three dimensions around the z
+   * axis.
    */
   template <int dim>
   void set_manifolds(const Parameters::Scene &scene,

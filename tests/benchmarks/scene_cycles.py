@@ -13,8 +13,9 @@ Usage: scene_cycles.py PROGRAM_2D PROGRAM_3D SCENES_2D SCENES_3D MPIEXEC DOFS PR
 For each scene and number of processes a row: the cycles of each level, those of each
 later load step behind a bar, and on how many levels and steps the numbers of nodes in
 contact or of sticking nodes are not those of the first number of processes. Scenes are
-solved to 1e-9 without contact nodes alone, and those that stop sooner also as they are.
-Then come the cycles of some of them with one thing changed. The results go to the standard output.
+solved to 1e-9, never on contact nodes alone, and those that stop sooner also as they
+are. Then come the cycles of some of them with one thing changed. The results go to the
+standard output.
 """
 import os
 import subprocess

@@ -204,8 +204,9 @@ namespace test_geometry_3d
 
   // Whether the vertices of the half cylinder are those of the half disc, in
   // equidistant layers. In either mesh deal.II's iterations find a point of a
-  // coarse cell to 3e-11 of its diameter, here half of the radius; the middle
-  // of a cell is a mean of eight, whose weights have the sum of moduli 3.
+  // coarse cell to 3e-11 of its diameter, here at most half of the radius; the
+  // middle of a cell is a mean of eight, whose weights have the sum of moduli
+  // 3, and errors of the levels add.
   void
   cross_section()
   {
@@ -247,7 +248,7 @@ namespace test_geometry_3d
                   << double(cylinder->n_used_vertices()) /
             disc->n_used_vertices()
                   << " layers, not found " << n_lost << ", off "
-                  << (off > 1e-10 * radius) << std::endl;
+                  << (off > 1e-9 * radius) << std::endl;
         if (level < 3)
           {
             disc->refine_global();

@@ -3,6 +3,7 @@
 // against those that deal.II finds in space; distortion and rotation of a
 // rectangle; a mesh from a file.
 
+#include <common/scene/extruded_manifold.h>
 #include <common/scene/scene.h>
 
 #include <deal.II/base/mpi.h>
@@ -116,7 +117,10 @@ namespace test_geometry
 
 
   // Cells of the ring have manifold id 1. Cells are refined everywhere, and
-  // then every third one, so that there are all kinds of faces.
+  // then every third one, so that there are all kinds of faces. In a coarse
+  // cell deal.II's iterations end at 3e-11 of its diameter, in space and in the
+  // section; the middle of a cell in space is a mean of 26 points, whose
+  // weights have the sum of moduli 7, and errors of the levels add.
   void
   extruded(std::vector<std::string> overrides)
   {
@@ -138,15 +142,14 @@ namespace test_geometry
             cell->set_refine_flag();
         triangulation->execute_coarsening_and_refinement();
       }
-    double largest = 0.;
-    for (unsigned int v = 0; v < mesh.n_vertices(); ++v)
-      largest = std::max(
-        largest, mesh.get_vertices()[v].distance(expected.get_vertices()[v]));
-    std::cout << mesh.n_active_cells() << " cells, ids";
-    for (const auto id : mesh.get_manifold_ids())
-      std::cout << ' ' << static_cast<int>(id);
-    std::cout << ", vertices where they are in space "
-              << (largest < 1e-10 ? "yes" : std::to_string(largest))
+    bool is_same = mesh.n_vertices() == expected.n_vertices();
+    for (unsigned int v = 0; v < mesh.n_vertices() && is_same; ++v)
+      is_same =
+        mesh.get_vertices()[v].distance(expected.get_vertices()[v]) < 1e-9;
+    const bool is_extruded =
+      dynamic_cast<const ExtrudedManifold *>(&mesh.get_manifold(1)) != nullptr;
+    std::cout << mesh.n_active_cells() << " cells, found in the section "
+              << is_extruded << ", vertices where they are in space " << is_same
               << std::endl;
   }
 
@@ -212,7 +215,9 @@ TEST(geometry)
   half_disc();
   extruded({"Scene/Geometry=cylinder"});
   extruded({"Scene/Geometry=cylinder", "Scene/Rotation angle=20"});
-  extruded({"Scene/Geometry=half cylinder", "Scene/Layers=1"});
+  extruded({"Scene/Geometry=half cylinder",
+            "Scene/Layers=1",
+            "Scene/Rotation angle=20"});
   print<2>({"Scene/Subdivisions=2, 2", "Scene/Size=3, 1"});
   print<2>({"Scene/Subdivisions=2, 2", "Scene/Distortion=0.3"});
   print<2>({"Scene/Rotation angle=90"});

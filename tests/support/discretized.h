@@ -5,6 +5,10 @@
 #include <common/discretization/discretization.h>
 #include <common/iteration/monotone_smoother.h>
 
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace Tests
@@ -62,6 +66,8 @@ namespace Tests
   inline bool
   phases_agree(const ContactState &a, const ContactState &b)
   {
+    if (a.size() != b.size())
+      return false;
     for (unsigned int p = 0; p < a.size(); ++p)
       if (a.in_contact(p) != b.in_contact(p) || a.sticks(p) != b.sticks(p))
         return false;
@@ -71,20 +77,20 @@ namespace Tests
 
 
   /** The largest difference of two sets of normal forces, in parts of the
-   * largest one of the second, if it has any. Collective. */
+   * largest one of both. Collective. */
   inline double
   relative_distance_of_forces(const ContactState &a, const ContactState &b)
   {
     double largest = 0., worst = 0.;
     for (unsigned int p = 0; p < a.size(); ++p)
       {
-        largest = std::max(largest, b.normal_force(p));
+        largest = std::max({largest, a.normal_force(p), b.normal_force(p)});
         worst =
           std::max(worst, std::abs(a.normal_force(p) - b.normal_force(p)));
       }
     worst   = Utilities::MPI::max(worst, MPI_COMM_WORLD);
     largest = Utilities::MPI::max(largest, MPI_COMM_WORLD);
-    return largest > 0. ? worst / largest : worst;
+    return largest > 0. ? worst / largest : 0.;
   }
 
 
