@@ -153,6 +153,7 @@ namespace benchmark_cost
         ContactState               no_state(0, false);
         nest.make_guess(u);
         bonded.impose(u);
+        linear_solver.prepare(u, no_state);
         Timer              timer;
         const SolverReport linear       = linear_solver.solve(u, no_state);
         const double       linear_solve = timer.wall_time();
@@ -192,11 +193,11 @@ namespace benchmark_cost
     const Discretization<dim> &d = nest.discretization();
     ContactSolver<dim>         solver(d, parameters.solver);
     const double               n_dofs = d.dof_handler().n_dofs();
-    std::printf("bytes per dof: leaf matrix %.0f, level hierarchy %.0f, "
-                "smoother and level matrices %.0f; peak of the process %.0f\n",
+    std::printf("bytes per dof: leaf matrix %.0f, smoother and levels %.0f, of "
+                "which hierarchy %.0f; peak of the process %.0f\n",
                 d.stiffness().memory_consumption() / n_dofs,
-                solver.levels().hierarchy().memory_consumption() / n_dofs,
                 nest.report().solver_memory / n_dofs,
+                solver.levels().hierarchy().memory_consumption() / n_dofs,
                 peak_memory() / n_dofs);
 
     // After the peak of the memory has been read.
