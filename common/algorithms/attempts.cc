@@ -31,22 +31,6 @@ namespace Friction
       return settings.algorithm == Algorithm::fixed_point ? "Algorithm 2"
                                                           : "Algorithm 3";
     }
-
-
-
-    // Notes what has been tried, and all the cycles that it took.
-    void
-    add_attempt(SolverReport       &all,
-                const std::string  &name,
-                const SolverReport &outcome)
-    {
-      all.attempts.push_back({name,
-                              static_cast<unsigned int>(outcome.cycles.size()),
-                              outcome.converged,
-                              outcome.certificate.largest()});
-      all.cycles.insert(
-        all.cycles.end(), outcome.cycles.begin(), outcome.cycles.end());
-    }
   } // namespace
 
 
@@ -95,11 +79,12 @@ namespace Friction
         best               = search.u;
         best_state         = search.state;
       }
-    add_attempt(
-      all,
-      name +
-        (report.finished_by_newton ? ", finished by Newton's method," : ""),
-      report);
+    attempts.push_back(
+      {name +
+         (report.finished_by_newton ? ", finished by Newton's method," : ""),
+       static_cast<unsigned int>(report.cycles.size()),
+       report.converged});
+    cycles.insert(cycles.end(), report.cycles.begin(), report.cycles.end());
   }
 
 
@@ -128,7 +113,7 @@ namespace Friction
   void
   SafeguardedSolver<dim>::Attempts::start_anew_unless_guess_is_better()
   {
-    if ((all.attempts.size() > 1 && !has_gone_on) || is_newton ||
+    if ((attempts.size() > 1 && !has_gone_on) || is_newton ||
         !solver.is_finite(search))
       start_anew();
   }
@@ -144,7 +129,7 @@ namespace Friction
     first.limits.patience          = its_patience;
     first.limits.worthwhile_cycles = worthwhile;
     first.limits.budget            = solver.budget;
-    if (!all.attempts.empty())
+    if (!attempts.empty())
       start_anew();
     attempt(algorithm, [&]() {
       return solver.algorithm_to_the_end(solver.iteration, first, search);
@@ -182,20 +167,28 @@ namespace Friction
 
 
 
+  // A contact zone that becomes too large says nothing against the method: that
+  // was no attempt, and the next one may have a larger limit.
   template <int dim>
   void
   SafeguardedSolver<dim>::Attempts::try_contact_nodes_alone()
   {
     const bool others_have_failed =
-      !all.attempts.empty() || begin_with == Method::contact_nodes;
-    if (report.converged || is_condensed ||
-        !solver.contact_nodes_alone_are_better(search, others_have_failed) ||
-        !begin(is_condensed))
-      return;
-    start_anew_unless_guess_is_better();
-    attempt((coulomb ? algorithm : "the iteration") + on_contact_nodes,
-            [&]() { return solver.contact_nodes_alone(search); });
-    if (report.converged && others_have_failed)
+      !attempts.empty() || begin_with == Method::contact_nodes;
+    while (!report.converged && !is_condensed &&
+           solver.contact_nodes_alone_are_better(search, others_have_failed) &&
+           begin(is_condensed))
+      {
+        start_anew_unless_guess_is_better();
+        attempt((coulomb ? algorithm : "the iteration") + on_contact_nodes,
+                [&]() { return solver.contact_nodes_alone(search); });
+        if (solver.condensed->has_given_up())
+          {
+            is_condensed = false;
+            attempts.pop_back();
+          }
+      }
+    if (is_condensed && report.converged && others_have_failed)
       solver.next_method = Method::contact_nodes;
   }
 
@@ -272,7 +265,7 @@ namespace Friction
     std::ostringstream text;
     text << "continuation from less friction" << where
          << ", up to the coefficient " << solved << ',';
-    all.attempts.back().name = text.str();
+    attempts.back().name = text.str();
     if (report.converged)
       solver.next_method = Method::newton;
   }
@@ -351,6 +344,9 @@ namespace Friction
     try_what_knows_the_law();
     try_what_has_solved_the_mesh_before();
 
+    // Whether the algorithm of the settings is enough by itself.
+    bool is_enough = false;
+
     // Whether there is something else to try soon.
     const bool may_aggregate = !report.converged && !is_aggregate &&
       solver.coarse_cells_may_be_to_blame();
@@ -368,13 +364,7 @@ namespace Friction
         if (report.converged && !is_newton && solver.has_defaults() &&
             much_friction && report.cycles.size() > many_for_the_next)
           solver.next_method = Method::newton;
-        if (report.converged && all.attempts.size() == 1)
-          {
-            report.next_method = solver.next_method;
-            if (report.finished_by_newton)
-              report.attempts = all.attempts;
-            return report;
-          }
+        is_enough = report.converged && attempts.size() == 1;
       }
 
     // Without much friction hardly anything but coarse levels can be to blame;
@@ -409,8 +399,9 @@ namespace Friction
         start_from_best();
         certify(report, solver.iteration.functional(), search.u, search.state);
       }
-    report.cycles      = all.cycles;
-    report.attempts    = all.attempts;
+    report.cycles = cycles;
+    if (!is_enough || report.finished_by_newton)
+      report.attempts = attempts;
     report.costs       = phase_costs(comm) - before;
     report.next_method = solver.next_method;
     return report;

@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace Friction
 {
@@ -29,8 +30,10 @@ namespace Friction
     const VectorType        initial;
     const ContactState      initial_state;
 
-    // Of the last attempt, and of all.
-    SolverReport report, all;
+    // Of the last attempt, and what all of them have come to.
+    SolverReport               report;
+    std::vector<SolverAttempt> attempts;
+    std::vector<CycleInfo>     cycles;
 
     // If nothing succeeds, what violates the law least is returned.
     double       smallest_violation = std::numeric_limits<double>::infinity();
@@ -42,8 +45,8 @@ namespace Friction
          is_newton = false, is_continued = false, is_mixed = false,
          has_gone_on = false;
 
-    // Whether there is anything left to do and to try it with; notes that it is
-    // being tried.
+    // Whether there is anything left to do and to try it with. Notes that it is
+    // being tried, and opens its share of the budget.
     bool begin(bool &is_tried, const bool is_last = false);
 
     template <typename MethodOfSolver>

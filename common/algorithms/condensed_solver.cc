@@ -177,11 +177,6 @@ namespace Friction
     zone = std::make_unique<ContactZone<dim>>(problem, matrix->sparsity());
     zone->grow(guess.u, guess.state);
     keep_zone();
-    if (!tree)
-      {
-        zone.reset();
-        gathered = NodeBlockMatrix<dim>();
-      }
   }
 
 
@@ -259,7 +254,8 @@ namespace Friction
 
 
 
-  // No tree is left if that is not worth while.
+  // Nothing is left if that is not worth while. It never will be, since zones
+  // only grow.
   template <int dim>
   void
   CondensedSolver<dim>::keep_zone()
@@ -271,7 +267,11 @@ namespace Friction
     tree = std::make_unique<EliminationTree>(
       matrix->sparsity(), positions, zone->nodes(), is_absent);
     if (!is_worthwhile(most_cycles))
-      tree.reset();
+      {
+        tree.reset();
+        zone.reset();
+        gathered = NodeBlockMatrix<dim>();
+      }
   }
 
 
@@ -282,7 +282,7 @@ namespace Friction
   CondensedSolver<dim>::grow_zone(const Iterate &x)
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
-    if (!zone->grow(x.u, x.state))
+    if (!zone || !zone->grow(x.u, x.state))
       return false;
     keep_zone();
     return true;
@@ -290,13 +290,14 @@ namespace Friction
 
 
 
-  // Nodes outside the zone may be what holds the body.
+  // Nodes outside the zone may be what holds the body. Returns whether it has
+  // not grown too large.
   template <int dim>
   bool
   CondensedSolver<dim>::factorize()
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
-    while (tree && !condensation && !has_failed)
+    while (!has_given_up() && !condensation)
       {
         condensation =
           std::make_unique<Condensation<dim>>(*matrix, *tree, is_held);
@@ -307,7 +308,7 @@ namespace Friction
             keep_zone();
           }
       }
-    return tree && !has_failed;
+    return !has_given_up();
   }
 
 
@@ -422,16 +423,16 @@ namespace Friction
     grow_zone(x);
     while (true)
       {
-        if (!is_worthwhile(limit) || !factorize())
-          {
-            report = SolverReport();
-            break;
-          }
         // A body that the zone did not hold has run away.
         if (!cycles.empty())
           {
             x.u     = start;
             x.state = start_state;
+          }
+        if (!factorize())
+          {
+            report = SolverReport();
+            break;
           }
         const bool by_newton = report.finished_by_newton;
         report = solve_in_zone(functional, x, method, limits, progress);
@@ -449,6 +450,10 @@ namespace Friction
         move_out_of_obstacle(x.u);
         certify(report, functional, x.u, x.state);
       }
+    // Cycles over levels contract otherwise, and these are no outer iterations
+    // of the whole body.
+    report.contraction = 0.;
+    report.outer_changes.clear();
     report.cycles        = cycles;
     report.costs         = phase_costs(comm) - before;
     report.matrix_memory = problem.stiffness.memory_consumption();
@@ -620,7 +625,6 @@ namespace Friction
                                   double(report.inner_converged),
                                   double(report.finished_by_newton),
                                   double(report.outer_iterations),
-                                  report.contraction,
                                   report.algebraic_error,
                                   report.energy,
                                   double(report.cycles.size())};
@@ -644,7 +648,6 @@ namespace Friction
     report.inner_converged    = *next++;
     report.finished_by_newton = *next++;
     report.outer_iterations   = *next++;
-    report.contraction        = *next++;
     report.algebraic_error    = *next++;
     report.energy             = *next++;
     report.cycles.resize(*next++);

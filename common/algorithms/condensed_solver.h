@@ -48,7 +48,8 @@ namespace Friction
      * Collective.
      * @param problem    kept by reference.
      * @param positions  of the nodes that this process owns.
-     * @param settings   sweeps and local solver.
+     * @param settings   sweeps, local solver and truncation, and whether
+     *                   Newton's method may finish.
      * @param guess      that solve() is likely to begin with: its zone is what
      *                   is kept at first.
      */
@@ -66,11 +67,19 @@ namespace Friction
     bool is_worthwhile(const double n_cycles) const;
 
     /** Has solve() end without a solution if the zone grows so that it takes
-     * longer than so many cycles; at first most_cycles. */
+     * longer than so many cycles, or than most_cycles, which is the limit at
+     * first. */
     void
     give_up_beyond(const double n_cycles)
     {
       limit = n_cycles;
+    }
+
+    /** Whether that has happened, or the matrix could not be factorised. */
+    bool
+    has_given_up() const
+    {
+      return !is_worthwhile(limit);
     }
 
     /// What solves the condensed problem.

@@ -42,13 +42,6 @@ namespace Friction
                        const Progress &progress = {},
                        const double    accuracy = 0.);
 
-    /** The parts put together. */
-    MonotoneMultigrid<dim> &
-    iteration()
-    {
-      return multigrid;
-    }
-
     Levels<dim> &
     levels()
     {

@@ -416,13 +416,16 @@ namespace Friction
     };
 
     // The derivative at a point, for which there is one solution more for each
-    // position.
+    // position. Returns whether there is one: not where nothing has moved yet,
+    // or the body is free of the obstacle and its forces are rounding.
     const auto differentiate = [&](const Sample &at, const double step) {
       accuracy = 0.;
       const double h =
         std::max(.01 * step, 1e-4 * at.positions.cwiseAbs().maxCoeff());
       Eigen::MatrixXd stiffness(n, n);
       bool            is_known = true;
+      if (!(h > 0.))
+        return false;
       for (unsigned int j = 0; j < n && is_known; ++j)
         {
           Eigen::VectorXd nearby = at.positions;
@@ -430,8 +433,13 @@ namespace Friction
           stiffness.col(j) = (solve_at(nearby, at).forces - at.forces) / h;
           is_known         = report.converged;
         }
+      constexpr double rounding = 1e-8;
+      if (is_known &&
+          (compliance * stiffness).cwiseAbs().maxCoeff() <= rounding)
+        return false;
       if (is_known)
         compliance = pseudo_inverse(stiffness);
+      return true;
     };
 
     if (!report.converged)
@@ -526,11 +534,12 @@ namespace Friction
 
     // What has been learnt on a way tells little of other directions. On the
     // first mesh the derivative costs next to nothing.
-    if (n > 1 && !std::exchange(is_learnt, true))
+    if (n > 1 && !is_learnt)
       {
         const ContactState found_state  = state;
         SolverReport       found_report = report;
-        differentiate(best, unit * compliance.cwiseAbs().maxCoeff());
+        is_learnt =
+          differentiate(best, unit * compliance.cwiseAbs().maxCoeff());
         move_to(best.positions);
         discretization.update_prescribed_values();
         u                             = best.displacement;

@@ -47,13 +47,6 @@ namespace Friction
     std::vector<double> next(const std::vector<double> &given,
                              const std::vector<double> &found);
 
-    /** Part of the way that is gone at present. */
-    double
-    damping() const
-    {
-      return present_damping;
-    }
-
   private:
     const unsigned int depth;
     const MPI_Comm     communicator;

@@ -75,8 +75,9 @@ namespace Friction
     const SolverReport &solve(const Progress &progress = {});
 
     /** The same with other settings, and leaves the iteration over the meshes
-     * alone: @p u and @p state are set to the initial guess and then to the
-     * solution, hanging nodes included. */
+     * alone, but for the positions of platens with given forces: @p u and @p
+     * state are set to the initial guess and then to the solution, hanging
+     * nodes included. */
     SolverReport solve_with(const SolverSettings &settings,
                             VectorType           &u,
                             ContactState         &state,

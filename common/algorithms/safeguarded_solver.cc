@@ -266,7 +266,8 @@ namespace Friction
 
 
 
-  // None if the matrix could not be factorised, either.
+  // None if the matrix could not be factorised or the zone became too large,
+  // either.
   template <int dim>
   std::optional<SolverReport>
   SafeguardedSolver<dim>::condensed_if_cheap(
@@ -277,7 +278,7 @@ namespace Friction
     if (!newton_is_for_contact_nodes_alone(search))
       return {};
     const SolverReport report = solve_condensed(search, method, limits);
-    if (!condensed->is_worthwhile(Condensed::most_cycles))
+    if (condensed->has_given_up())
       return {};
     return report;
   }
@@ -320,7 +321,7 @@ namespace Friction
                                                     TruncationVariant::phases);
     if (!algebraic)
       algebraic = std::make_unique<AlgebraicCorrection<dim>>(
-        problem, settings.coarsest_method);
+        problem, CoarsestMethod::automatic);
     return iteration.with(*phases).with(*algebraic).with(whole_steps);
   }
 
@@ -508,8 +509,9 @@ namespace Friction
   {
     const RunScope part(problem.communicator(), RunPart::solution);
     const Progress none;
-    if (!settings.safeguards ||
-        !begins_with_contact_nodes_alone({u, state, none, 0.}))
+    if (settings.coarse_correction != CoarseCorrection::algebraic &&
+        (!settings.safeguards ||
+         !begins_with_contact_nodes_alone({u, state, none, 0.})))
       levels.make_now();
   }
 

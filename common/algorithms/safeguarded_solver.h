@@ -33,7 +33,7 @@ namespace Friction
    *    friction, or where materials jump, it has to show soon that it gets
    *    somewhere. Unless materials jump or are nearly incompressible, so that
    *    levels are of little use, Newton's method may be its end, see
-   *    NewtonFinish, and that of 3.; on contact nodes alone always;
+   *    NewtonFinish, and that of 3., and on contact nodes alone;
    * 3. the algorithm of the settings with AggregateCorrection, where there is
    *    not much friction and materials jump, or most nodes of a body in three
    *    dimensions are in lines of strong couplings: coarse functions do not
@@ -101,9 +101,10 @@ namespace Friction
                       const Method            first = Method::algorithm);
 
     /**
-     * Makes the levels, unless contact nodes alone are going to be tried first.
-     * Otherwise solve() does that, for callers that do not count its time
-     * apart. Collective. The arguments are the initial guess.
+     * Makes the levels, unless contact nodes alone are going to be tried first
+     * or corrections are algebraic. Otherwise solve() does that, for callers
+     * that do not count its time apart. Collective. The arguments are the
+     * initial guess.
      */
     void prepare(VectorType &u, ContactState &state);
 
@@ -114,7 +115,8 @@ namespace Friction
      * returned.
      * @param accuracy  if it is positive, relative increments of this size are
      *                  small enough, whatever is tried, and certificates are
-     * not asked for: for solutions on the way to the one that is wanted.
+     *                  not asked for: for solutions on the way to the one that
+     *                  is wanted.
      */
     SolverReport solve(VectorType     &u,
                        ContactState   &state,

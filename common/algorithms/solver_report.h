@@ -26,9 +26,8 @@ namespace Friction
   struct SolverAttempt
   {
     std::string  name; ///< of the method, for a message
-    unsigned int cycles      = 0;
-    bool         converged   = false;
-    double       certificate = 0; ///< its largest violation
+    unsigned int cycles    = 0;
+    bool         converged = false;
   };
 
 
@@ -42,15 +41,16 @@ namespace Friction
     /// iteration and the certificate say.
     bool inner_converged = false;
 
-    /// Multigrid solutions with given normal forces: those of Algorithm 2, one
-    /// otherwise.
+    /// Multigrid solutions with given normal forces: those of Algorithm 2,
+    /// otherwise one for each position of a platen; those of the last attempt.
     unsigned int outer_iterations = 0;
 
     /// All multigrid cycles, of all outer iterations.
     std::vector<CycleInfo> cycles;
 
     /// Mean contraction of the increments per cycle (Algorithm 2: in the first
-    /// outer iteration).
+    /// outer iteration). Zero if there was but one, and on contact nodes alone,
+    /// where it would say nothing of cycles over levels.
     double contraction = 0;
 
     /// Energy norm of the error of the iteration, see MultigridResult; without

@@ -195,16 +195,12 @@ namespace test_force_control
 
   // Nor is there any force to begin with, on two meshes.
   void
-  load()
+  load(const std::string &name, const std::vector<std::string> &entries)
   {
+    std::vector<std::string> overrides = {"Load steps/Times=0, 1"};
+    overrides.insert(overrides.end(), entries.begin(), entries.end());
     NestedIteration<2> nest(without_safeguards(
-      read_parameters(SCENES_DIR "/stick-slip.prm",
-                      {"Load steps/Times=0, 1",
-                       "Scene/Constants=L = 2; H = 1; U = 0; d = 0.02; gap = 0",
-                       "Boundary conditions/Displacement=3: U, 0",
-                       "Boundary conditions/Force=3: free, -p*L*t",
-                       "Boundary conditions/Traction=0: -side*t, 0; "
-                       "1: side*t, 0"})));
+      read_parameters(SCENES_DIR "/stick-slip.prm", overrides)));
     nest.begin();
     bool good = nest.solve().converged;
     refine_some(nest);
@@ -213,7 +209,7 @@ namespace test_force_control
     good               = nest.begin_next_load_step() && good;
     good               = nest.solve().converged && good;
     check_everywhere(good && force < 1e-12 && error(nest) < 1e-6,
-                     "in the beginning there is no force");
+                     "in the beginning there is no force" + name);
   }
 
 
@@ -401,7 +397,16 @@ TEST(force_control)
      "Boundary conditions/Displacement=5: 0, 0, -0.5*d",
      "Boundary conditions/Force=5: qx*L*W, qy*L*W, -p*L*W"});
   unload();
-  load();
+  load("",
+       {"Scene/Constants=L = 2; H = 1; U = 0; d = 0.02; gap = 0",
+        "Boundary conditions/Displacement=3: U, 0",
+        "Boundary conditions/Force=3: free, -p*L*t",
+        "Boundary conditions/Traction=0: -side*t, 0; 1: side*t, 0"});
+  load(", in two components",
+       {"Scene/Constants=L = 2; H = 1; U = 0.01; d = 0.02; gap = 0",
+        "Boundary conditions/Displacement=3: 0, 0",
+        "Boundary conditions/Force=3: q*L*t, -p*L*t",
+        "Boundary conditions/Traction=0: -side*t, -q*t; 1: side*t, q*t"});
   last_one();
   resume();
   find_again<2>("hertz.prm", "1", "0, -0.001", "Refinement/Levels=3");

@@ -245,6 +245,33 @@ namespace test_safeguards
 
 
 
+  // All of a long side comes into contact, of which the guess touches nothing:
+  // that is too much for contact nodes alone, where one gives up, but says
+  // nothing against any method.
+  void
+  test_unforeseen_contact()
+  {
+    std::cout << "Unforeseen contact" << std::endl;
+    const Parameters p =
+      read_parameters(SCENES_DIR "/block.prm",
+                      {"Scene/Size=128, 1",
+                       "Scene/Subdivisions=128, 1",
+                       "Refinement/Initial refinements=0",
+                       "Obstacle/Point=0, -0.002",
+                       "Boundary conditions/Displacement=3: 0.002, -0.01",
+                       "Solver/Inner tolerance=1e-9",
+                       "Solver/Condensation=where quicker"});
+    VectorType         u;
+    ContactState       state(0, false);
+    const SolverReport report = solve<2>(p, u, state);
+    check(report.converged && report.attempts.empty(),
+          "it is solved over levels");
+    check(report.next_method == Method::algorithm,
+          "and the next mesh begins with that");
+  }
+
+
+
   // No solution satisfies the laws to the last digit. If that is what is asked
   // for, everything is tried, and what is said in the end is that it was not
   // enough.
@@ -279,5 +306,6 @@ TEST(safeguards)
   test_much_friction(true);
   test_much_friction_and_little_volume();
   test_little_volume();
+  test_unforeseen_contact();
   test_failure();
 }
