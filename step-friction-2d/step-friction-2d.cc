@@ -184,8 +184,7 @@ namespace StepFriction2d
         force_control.restore(resumption.platens);
         for (const LevelRecord &record : output.levels())
           {
-            stop.add_level(
-              record.error_at_least, record.dofs, record.contraction);
+            stop.add_level(record.error_at_least, record.dofs, record.pace);
             report.next_method = Method(record.next_method);
           }
       }
@@ -531,7 +530,7 @@ namespace StepFriction2d
             estimate_contact_error(discretization, displacement, tractions);
         stop.add_level(estimate.lower_bound,
                        discretization.dof_handler().n_dofs(),
-                       report.contraction);
+                       report.pace);
         record_level(level, estimate);
 
         // A level without a certified solution is the end: what is wrong on

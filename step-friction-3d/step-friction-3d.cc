@@ -64,8 +64,7 @@ namespace StepFriction3d
         nest.resume();
         for (const LevelRecord &record : output.levels())
           {
-            nest.add_level(
-              record.error_at_least, record.dofs, record.contraction);
+            nest.add_level(record.error_at_least, record.dofs, record.pace);
             nest.begin_with(Method(record.next_method));
           }
       }

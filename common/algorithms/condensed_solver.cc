@@ -452,7 +452,7 @@ namespace Friction
       }
     // Cycles over levels contract otherwise, and these are no outer iterations
     // of the whole body.
-    report.contraction = 0.;
+    report.pace = 0.;
     report.outer_changes.clear();
     report.cycles        = cycles;
     report.costs         = phase_costs(comm) - before;
@@ -625,6 +625,7 @@ namespace Friction
                                   double(report.inner_converged),
                                   double(report.finished_by_newton),
                                   double(report.outer_iterations),
+                                  report.contraction,
                                   report.algebraic_error,
                                   report.energy,
                                   double(report.cycles.size())};
@@ -648,6 +649,7 @@ namespace Friction
     report.inner_converged    = *next++;
     report.finished_by_newton = *next++;
     report.outer_iterations   = *next++;
+    report.contraction        = *next++;
     report.algebraic_error    = *next++;
     report.energy             = *next++;
     report.cycles.resize(*next++);

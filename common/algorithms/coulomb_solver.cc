@@ -112,7 +112,7 @@ namespace Friction
         report.cycles.insert(
           report.cycles.end(), result.cycles.begin(), result.cycles.end());
         if (report.outer_iterations++ == 0)
-          report.contraction = result.contraction();
+          report.contraction = report.pace = result.contraction();
         report.inner_converged = result.converged;
         report.algebraic_error = result.algebraic_error;
         if (!result.converged)

@@ -52,8 +52,8 @@ namespace Friction
      * @param error_of_level  an energy norm, ErrorEstimate::lower_bound; zero
      *                        if it is not known.
      * @param n_dofs          number of unknowns.
-     * @param contraction     of the increments per cycle; zero if there was but
-     *                        one. */
+     * @param contraction     of the increments per cycle, SolverReport::pace;
+     *                        zero if it is not known. */
     void add_level(const double                          error_of_level,
                    const dealii::types::global_dof_index n_dofs,
                    const double                          contraction);

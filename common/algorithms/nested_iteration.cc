@@ -167,7 +167,7 @@ namespace Friction
   {
     add_level(estimate.lower_bound,
               the_discretization.dof_handler().n_dofs(),
-              last_report.contraction);
+              last_report.pace);
   }
 
 
@@ -176,9 +176,9 @@ namespace Friction
   void
   NestedIteration<dim>::add_level(const double error_at_least,
                                   const dealii::types::global_dof_index n_dofs,
-                                  const double contraction)
+                                  const double                          pace)
   {
-    stop.add_level(error_at_least, n_dofs, contraction);
+    stop.add_level(error_at_least, n_dofs, pace);
   }
 
 

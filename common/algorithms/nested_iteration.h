@@ -106,7 +106,7 @@ namespace Friction
      * DiscretizationStop::add_level(). */
     void add_level(const double                          error_at_least,
                    const dealii::types::global_dof_index n_dofs,
-                   const double                          contraction);
+                   const double                          pace);
 
     /** What the next solution begins with, in a run that is continued;
      * otherwise that is SolverReport::next_method of the last one. */

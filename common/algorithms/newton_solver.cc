@@ -247,6 +247,7 @@ namespace Friction
     const PhaseCosts before = phase_costs(comm);
     SolverReport     report;
     report.set_result(newton.solve(u, state, limits.limits, progress));
+    report.pace = 0.;
     certify(report, functional, u, state);
     if (!(report.certificate.largest() <= limits.certificate_tolerance))
       report.converged = false;

@@ -37,6 +37,7 @@ namespace Friction
     outer_iterations = 1;
     cycles           = result.cycles;
     contraction      = result.contraction();
+    pace             = contraction;
   }
 
 

@@ -49,9 +49,13 @@ namespace Friction
     std::vector<CycleInfo> cycles;
 
     /// Mean contraction of the increments per cycle (Algorithm 2: in the first
-    /// outer iteration). Zero if there was but one, and on contact nodes alone,
-    /// where it would say nothing of cycles over levels.
+    /// outer iteration). Zero if there was but one.
     double contraction = 0;
+
+    /// The same if these were cycles of an iteration of the whole body, and
+    /// zero if they were steps of Newton's method or on contact nodes alone:
+    /// what the next mesh may expect.
+    double pace = 0;
 
     /// Energy norm of the error of the iteration, see MultigridResult; without
     /// what the outer iteration of Algorithm 2 adds to it.

@@ -48,6 +48,9 @@ namespace Friction
     /// cycle. Where forces are given, that of the last solution for them.
     double contraction = 0.;
 
+    /// SolverReport::pace, for a run that is continued.
+    double pace = 0.;
+
     /// Algorithm 2: contraction of the relative changes of the normal forces,
     /// as the thesis prints it (their geometric mean), and per outer iteration.
     /// Zero for Algorithm 3.
@@ -110,7 +113,7 @@ namespace Friction
       archive &level &load_step &time &cells                   &dofs;
       archive &contact_nodes                                   &sticky_nodes;
       archive &outer_iterations &cycles &attempts &next_method &contraction;
-      archive                                                  &rho_tau;
+      archive &pace                                            &rho_tau;
       archive &rho_tau_contraction &energy &algebraic_error    &normal_force;
       archive                                   &tangential_force;
       archive &max_pressure &contact_half_width &stick_half_width;

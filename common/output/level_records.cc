@@ -225,6 +225,7 @@ namespace Friction
     record.outer_iterations    = report.outer_iterations;
     record.cycles              = report.cycles.size();
     record.contraction         = report.contraction;
+    record.pace                = report.pace;
     record.energy              = report.energy;
     record.rho_tau             = report.rho_tau_as_printed();
     record.rho_tau_contraction = report.rho_tau_contraction();

@@ -96,7 +96,7 @@ namespace test_contact_nodes_alone
         check_everywhere(
           std::abs(report.cycles.back().energy / report.energy - 1) < 1e-10,
           "  cycles tell the energy of the body");
-        check_everywhere(report.contraction == 0.,
+        check_everywhere(report.pace == 0.,
                          "  and nothing of cycles over levels");
 
         check_everywhere(relative_distance(v, u) < 1e-8,

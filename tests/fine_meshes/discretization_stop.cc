@@ -70,7 +70,7 @@ namespace test_discretization_stop
         u -= nest.displacement();
         const double        error = energy_norm<dim>(d.stiffness().blocks(), u);
         const ErrorEstimate estimate = nest.estimate();
-        stop.add_level(estimate.lower_bound, n_dofs, report.contraction);
+        stop.add_level(estimate.lower_bound, n_dofs, report.pace);
         least_cycles =
           std::min<unsigned int>(least_cycles, report.cycles.size());
         share = std::max(share, error / estimate.total);
