@@ -187,9 +187,9 @@ namespace Friction
             is_condensed = false;
             attempts.pop_back();
           }
+        else if (report.converged && others_have_failed)
+          solver.next_method = Method::contact_nodes;
       }
-    if (is_condensed && report.converged && others_have_failed)
-      solver.next_method = Method::contact_nodes;
   }
 
 
