@@ -416,16 +416,17 @@ namespace Friction
     };
 
     // The derivative at a point, for which there is one solution more for each
-    // position. Returns whether there is one: not where nothing has moved yet,
-    // or the body is free of the obstacle and its forces are rounding.
+    // position. Returns whether that need not be asked again: it has to be
+    // where nothing has moved yet, or where the body is free of the obstacle
+    // and its forces are rounding, but not where a solution has failed.
     const auto differentiate = [&](const Sample &at, const double step) {
       accuracy = 0.;
       const double h =
         std::max(.01 * step, 1e-4 * at.positions.cwiseAbs().maxCoeff());
-      Eigen::MatrixXd stiffness(n, n);
-      bool            is_known = true;
       if (!(h > 0.))
         return false;
+      Eigen::MatrixXd stiffness(n, n);
+      bool            is_known = true;
       for (unsigned int j = 0; j < n && is_known; ++j)
         {
           Eigen::VectorXd nearby = at.positions;
@@ -433,12 +434,12 @@ namespace Friction
           stiffness.col(j) = (solve_at(nearby, at).forces - at.forces) / h;
           is_known         = report.converged;
         }
+      if (!is_known)
+        return true;
       constexpr double rounding = 1e-8;
-      if (is_known &&
-          (compliance * stiffness).cwiseAbs().maxCoeff() <= rounding)
+      if ((compliance * stiffness).cwiseAbs().maxCoeff() <= rounding)
         return false;
-      if (is_known)
-        compliance = pseudo_inverse(stiffness);
+      compliance = pseudo_inverse(stiffness);
       return true;
     };
 

@@ -425,18 +425,20 @@ namespace Friction
 
 
 
-    // Along a cylinder whose section has cells about as wide as that. It may be
-    // too large for an integer, see n_coarse_cells().
+    // Along a cylinder: so many that cells are about as long as those of its
+    // section are wide, relative to the radius. It may be too large for an
+    // integer, see n_coarse_cells().
     double
-    n_layers(const Parameters::Scene &scene, const double cell_width)
+    n_layers(const Parameters::Scene &scene)
     {
+      const bool is_whole = scene.geometry == GeometryKind::cylinder;
+      if (is_whole && scene.coarse_grid == CoarseGrid::one_cell)
+        return 1.;
+      const double width = is_whole ? .6 : .2;
       return scene.layers > 0
         ? scene.layers
-        : std::max(1., std::round(scene.length / cell_width));
+        : std::max(1., std::round(scene.length / (width * scene.radius)));
     }
-
-    // Of the two cylinders, relative to the radius.
-    constexpr double width_in_disc = .6, width_in_half_disc = .2;
 
 
 
@@ -514,25 +516,23 @@ namespace Friction
                                         : 0u;
       };
 
+      const auto layers = [&]() {
+        return extrude(section_of(scene),
+                       length,
+                       static_cast<unsigned int>(n_layers(scene)));
+      };
+
       if (scene.geometry == GeometryKind::half_disc)
         throw no_such_body(where, "half disc", 2);
       else if (scene.geometry == GeometryKind::cylinder)
         create(
-          extrude(
-            section_of(scene),
-            length,
-            scene.coarse_grid == CoarseGrid::one_cell
-              ? 1
-              : static_cast<unsigned int>(n_layers(scene, width_in_disc * R))),
+          layers(),
           [=](const Point<3> &p) { return end_id(p, 1); },
           numbers::invalid_boundary_id,
           triangulation);
       else if (scene.geometry == GeometryKind::half_cylinder)
         create(
-          extrude(
-            section_of(scene),
-            length,
-            static_cast<unsigned int>(n_layers(scene, width_in_half_disc * R))),
+          layers(),
           [=](const Point<3> &p) {
             return p[1] > -tolerance ? 1u : end_id(p, 2);
           },
@@ -628,7 +628,6 @@ namespace Friction
   double
   n_coarse_cells(const Parameters::Scene &scene)
   {
-    const double R = scene.radius;
     switch (scene.geometry)
       {
         case GeometryKind::rectangle:
@@ -639,13 +638,8 @@ namespace Friction
             return product;
           }
         case GeometryKind::cylinder:
-          return scene.coarse_grid == CoarseGrid::one_cell
-            ? 1.
-            : section_of(scene).cells.size() *
-              n_layers(scene, width_in_disc * R);
         case GeometryKind::half_cylinder:
-          return section_of(scene).cells.size() *
-            n_layers(scene, width_in_half_disc * R);
+          return section_of(scene).cells.size() * n_layers(scene);
         default:
           return 0.;
       }
