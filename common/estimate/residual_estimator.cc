@@ -572,9 +572,10 @@ namespace Friction
                 (*contact.traction)(cell->vertex_dof_index(of_face[k], c));
         }
 
-      const auto prescribed = problem.tractions.find(id);
-      const bool is_prescribed =
-        !on_contact_boundary && prescribed != problem.tractions.end();
+      // On a contact boundary both the given traction and that of the obstacle
+      // act.
+      const auto prescribed    = problem.tractions.find(id);
+      const bool is_prescribed = prescribed != problem.tractions.end();
       if (is_prescribed)
         {
           std::vector<Point<dim>> points;
@@ -599,7 +600,7 @@ namespace Friction
             interpolate(hat_values(place), nodal_tractions);
           if (is_prescribed)
             for (unsigned int c = 0; c < dim; ++c)
-              residual[c] = tractions[q](c);
+              residual[c] += tractions[q](c);
           residual -= stress_times_normal(
             cell, material, point.gradient, conormal / length);
           for (unsigned int c = 0; c < dim; ++c)

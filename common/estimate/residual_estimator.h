@@ -130,19 +130,19 @@ namespace Friction
    *        + \tfrac12\sum_{e\subset\partial K\cap\Omega}
    *          h_e\,\|[\sigma_hn]\|_e^2
    *        + \sum_{e\subset\Gamma_N}h_e\,\|t-\sigma_hn\|_e^2
-   *        + \sum_{e\subset\Gamma_S}h_e\,\|t_h-\sigma_hn\|_e^2 \Big) \\
+   *        + \sum_{e\subset\Gamma_S}h_e\,\|t_h+t-\sigma_hn\|_e^2 \Big) \\
    *      & + \sum_{e\subset\Gamma_S}\int_e p_h\,(g-u_{h,n})_+
    *        + \big(F p_h|u_{h,T}|+t_{h,T}\cdot u_{h,T}\big)_+ ,
    * @f}
    * with $h$ the diameters of cells and faces. The first line is Verfürth's
    * estimator for elasticity (A Posteriori Error Estimation Techniques for
    * Finite Element Methods, 2013, chapter 4). On the contact boundary the
-   * multiplier $t_h$, the nodal contact tractions interpolated linearly, takes
-   * the place of a prescribed traction, and what remains of the contact laws
-   * between the nodes, $u_{h,T}$ counted from where friction does, is added
-   * (Hild and Nicaise, Numer. Math. 101, 2005, for contact; Krause, Veeser and
-   * Walloth, Numer. Math. 130, 2015, for the distinction between the discrete
-   * contact force and the boundary stress). $p_h=-t_h\cdot n$.
+   * multiplier $t_h$, the nodal contact tractions interpolated linearly, is
+   * added to the prescribed traction, zero as a rule, and what remains of the
+   * contact laws between the nodes, $u_{h,T}$ counted from where friction does,
+   * is added (Hild and Nicaise, Numer. Math. 101, 2005, for contact; Krause,
+   * Veeser and Walloth, Numer. Math. 130, 2015, for the distinction between the
+   * discrete contact force and the boundary stress). $p_h=-t_h\cdot n$.
    *
    * Where materials meet the $\mu$ of an edge is the larger one of both sides
    * (Bernardi and Verfürth, Numer. Math. 85, 2000).

@@ -199,6 +199,13 @@ namespace test_residual_estimator_patch
     std::cout << "  expected complementarity " << pressure << std::endl;
     g = 0.;
 
+    // What pushes on the base from outside takes half from the obstacle.
+    t *= .5;
+    const Functions::ConstantFunction<dim> half(components(.5 * on_base));
+    problem.tractions[2] = &half;
+    print("half of the contact stress given");
+    problem.tractions.erase(2);
+
     contact.traction = nullptr;
     print("no contact stress");
   }
