@@ -165,7 +165,10 @@ namespace Friction
     std::vector<unsigned int> nodes;
     if (state.has_friction())
       for (unsigned int p = 0; p < problem.contact.size(); ++p)
-        if (state.normal_force(p) > 0 && !state.sticks(p) &&
+        if (problem.effective_coefficient(problem.contact[p]) *
+                state.normal_force(p) >
+              0 &&
+            !state.sticks(p) &&
             excess_of_reversal(problem.contact[p], v, u) > 0)
           nodes.push_back(p);
     return nodes;
