@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace Friction
 {
@@ -44,9 +45,11 @@ namespace Friction
     std::vector<Eigen::MatrixXd> borders(fronts.size());
     std::vector<unsigned int>    place(matrix.n_rows());
     factors->columns.assign(fronts.size(), {});
-    // Pivots that are smaller than this are rounding errors: nothing holds the
-    // body.
-    constexpr double rounding = 1e-14;
+    // Pivots that are smaller than this, in parts of the diagonal entry of the
+    // matrix, are rounding errors: nothing holds the body. Each elimination may
+    // leave one.
+    const double rounding = std::max(
+      1e-14, std::numeric_limits<double>::epsilon() * dim * matrix.n_rows());
 
     for (std::size_t f = 0; f < fronts.size(); ++f)
       {
@@ -87,6 +90,7 @@ namespace Friction
               if (is_held[dim * i + d])
                 F(dim * k + d, dim * k + d) = trace<dim>(diagonal) / dim;
           }
+        const Eigen::VectorXd diagonal = F.diagonal().head(n_own);
         for (const unsigned int child : front.children)
           {
             const std::vector<unsigned int> &border = fronts[child].border;
@@ -105,8 +109,7 @@ namespace Friction
             factors->kept = std::move(F);
             break;
           }
-        const Eigen::VectorXd diagonal = F.diagonal().head(n_own);
-        auto                  own      = F.topLeftCorner(n_own, n_own);
+        auto own = F.topLeftCorner(n_own, n_own);
         Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> cholesky(own);
         if (cholesky.info() != Eigen::Success ||
             (own.diagonal().array().square() < rounding * diagonal.array())
