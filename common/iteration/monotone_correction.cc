@@ -240,7 +240,8 @@ namespace Friction
       {
         const double room = (step[i] > 0 ? up[i] : lo[i]) - c[i];
         if (std::abs(step[i]) > std::abs(room))
-          admissible = std::min(admissible, room / step[i]);
+          // Rounding may have left it an ulp outside.
+          admissible = std::min(admissible, std::max(0., room / step[i]));
       }
     admissible    = -max_over_processes(-admissible, comm);
     double length = 1.;

@@ -111,8 +111,10 @@ namespace Friction
         if (i % step == 0)
           {
             const Partners partners = strong_partners(A, i, is_relaxed);
-            sampled[0] += 1;
-            sampled[1] += partners[0] != none || partners[1] != none;
+            // Each stands for as many as its process passes over.
+            sampled[0] += step;
+            if (partners[0] != none || partners[1] != none)
+              sampled[1] += step;
           }
     sampled = sum_over_processes(sampled, communicator);
     if (sampled[1] <= fewest * sampled[0])
