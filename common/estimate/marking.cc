@@ -3,16 +3,14 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <cmath>
-
 namespace Friction
 {
   using namespace dealii;
 
   namespace
   {
-    // Errors are stored in single precision, and sums in an order that
-    // depends on the mesh: what agrees to this is the same.
+    // Errors are stored in single precision, and come from sums in an order
+    // that depends on the mesh: what agrees to this is the same.
     constexpr double rounding = 1e-4;
 
 
@@ -73,55 +71,10 @@ namespace Friction
 
 
 
-  template <int dim>
-  unsigned int
-  mark_bulk(Triangulation<dim>  &triangulation,
-            const Vector<float> &cell_errors,
-            const double         theta)
-  {
-    Assert(theta > 0. && theta <= 1., ExcMessage("theta must be in (0,1]."));
-
-    const auto bulk_above = [&](const double threshold) {
-      double sum = 0.;
-      for (const auto &cell : triangulation.active_cell_iterators())
-        if (cell->is_locally_owned())
-          {
-            const double error = cell_errors(cell->active_cell_index());
-            if (error >= threshold)
-              sum += error * error;
-          }
-      return Utilities::MPI::sum(
-        sum, Compatibility::mpi_communicator(triangulation));
-    };
-
-    // Sorting the errors of all processes would mean to send them around.
-    // Halving the interval in which the threshold lies needs one sum per step;
-    // in the logarithm, because errors differ by orders of magnitude.
-    const double largest = largest_error(triangulation, cell_errors);
-    if (largest == 0.)
-      return 0;
-    const double wanted = (1. - 1e-12) * theta * bulk_above(0.);
-    double       upper  = largest * (1. + rounding);
-    double       lower  = largest * 1e-8;
-    while (upper > lower * (1. + 0.5 * rounding))
-      {
-        const double middle = std::sqrt(upper * lower);
-        (bulk_above(middle) >= wanted ? lower : upper) = middle;
-      }
-
-    return mark_above(triangulation, cell_errors, (1. - rounding) * lower);
-  }
-
-
-
   template unsigned int
   mark_by_maximum<2>(Triangulation<2> &, const Vector<float> &, const double);
   template unsigned int
   mark_by_maximum<3>(Triangulation<3> &, const Vector<float> &, const double);
-  template unsigned int
-  mark_bulk<2>(Triangulation<2> &, const Vector<float> &, const double);
-  template unsigned int
-  mark_bulk<3>(Triangulation<3> &, const Vector<float> &, const double);
 
 
 

@@ -15,8 +15,8 @@ namespace Friction
    * Returns the number of cells marked on all processes: none if all errors are
    * 0.
    *
-   * Cells whose errors differ by rounding only are treated alike, here and
-   * below, so that a symmetric problem keeps a symmetric mesh.
+   * Cells whose errors differ by rounding only are treated alike, so
+   * that a symmetric problem keeps a symmetric mesh.
    *
    * @param cell_errors $\eta_K\ge0$, one value per active cell.
    * @param theta       between 0 and 1; smaller values mark more cells.
@@ -25,17 +25,6 @@ namespace Friction
   unsigned int mark_by_maximum(dealii::Triangulation<dim>  &triangulation,
                                const dealii::Vector<float> &cell_errors,
                                const double                 theta);
-
-  /**
-   * Set the refinement flag of the cells with the largest errors, as few as
-   * carry the fraction @p theta of $\sum_K\eta_K^2$ (Dörfler, SIAM J. Numer.
-   * Anal. 33, 1996). Larger values mark more cells. Otherwise as
-   * mark_by_maximum().
-   */
-  template <int dim>
-  unsigned int mark_bulk(dealii::Triangulation<dim>  &triangulation,
-                         const dealii::Vector<float> &cell_errors,
-                         const double                 theta);
 
   /**
    * Sets the refinement flag of every cell at the boundary that has a vertex in
