@@ -493,7 +493,8 @@ namespace StepFriction2d
                                                  *scene.exact_displacement(),
                                                  displacement),
                              parameters.refinement.strategy ==
-                               RefinementStrategy::uniform);
+                                 RefinementStrategy::uniform &&
+                               scene.load_step() == 0);
   }
 
 
@@ -562,7 +563,7 @@ namespace StepFriction2d
             // and all five parts ask them.
             load_steps.begin_next(
               scene, discretization, force_control, displacement, tractions);
-            output.begin_load_step(scene);
+            output.begin_load_step(discretization);
           }
         else
           // Nested iteration: the displacement and the contact tractions are

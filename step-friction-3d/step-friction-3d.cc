@@ -224,7 +224,7 @@ namespace StepFriction3d
     bool is_solved = output.check_solution(nest);
     while (is_solved && nest.begin_next_load_step())
       {
-        output.begin_load_step(nest.scene());
+        output.begin_load_step(nest.discretization());
         output.save_checkpoint(nest);
         solve(nest, output);
         is_solved = output.check_solution(nest);

@@ -8,14 +8,16 @@
 
 namespace Friction
 {
-  Console::Console(std::ostream  &out,
-                   const Times    times,
-                   const bool     silent,
-                   const MPI_Comm communicator)
+  Console::Console(std::ostream   &out,
+                   const Times     times,
+                   const Verbosity verbosity,
+                   const MPI_Comm  communicator)
     : out(out)
     , first_process(dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
     , show_times(times == Times::shown)
-    , silent(silent || !first_process)
+    , silent(verbosity == Verbosity::quiet || !first_process)
+    , show_progress(verbosity == Verbosity::cycles && first_process &&
+                    show_times)
     , terminal(&out == &std::cout && ::isatty(STDOUT_FILENO) != 0)
     , start(Clock::now())
     , level_start(start)
@@ -64,7 +66,7 @@ namespace Friction
                     const unsigned int cycle,
                     const double       increment)
   {
-    if (silent || !show_times)
+    if (!show_progress)
       return;
 
     const Clock::time_point now = Clock::now();

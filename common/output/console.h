@@ -2,6 +2,7 @@
 #define friction_output_console_h
 
 #include <common/output/history.h>
+#include <common/parameters/parameters.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -22,8 +23,9 @@ namespace Friction
    * clock is printed if times are switched off, so that the output can be
    * compared from run to run.
    *
-   * A silent console prints warnings and nothing else. With several processes
-   * only that of the first one prints at all.
+   * Without progress, rows and remarks are all; a silent console prints
+   * warnings and nothing else. With several processes only that of the first
+   * one prints at all.
    */
   class Console
   {
@@ -52,10 +54,10 @@ namespace Friction
      * @param out where to print; must outlive this object. If it is std::cout
      *            and that is a terminal, progress lines are overwritten.
      */
-    explicit Console(std::ostream  &out,
-                     const Times    times        = Times::shown,
-                     const bool     silent       = false,
-                     const MPI_Comm communicator = MPI_COMM_SELF);
+    explicit Console(std::ostream   &out,
+                     const Times     times        = Times::shown,
+                     const Verbosity verbosity    = Verbosity::cycles,
+                     const MPI_Comm  communicator = MPI_COMM_SELF);
 
     /// The row of a level that is complete; before the first one the header.
     void level_complete(const LevelRecord &record);
@@ -90,6 +92,7 @@ namespace Friction
     const bool    first_process;
     const bool    show_times;
     const bool    silent;
+    const bool    show_progress;
     const bool    terminal;
 
     unsigned int      rows = 0;

@@ -53,8 +53,10 @@ namespace Friction
              "contraction of these changes",
              Q::number,
              &R::rho_tau_contraction);
-      column(
-        "energy", "elastic energy minus work of loads", Q::energy, &R::energy);
+      column("energy",
+             "elastic energy and work of friction minus work of loads",
+             Q::energy,
+             &R::energy);
       column("algebraic_error",
              "error of the iteration in the energy norm, extrapolated",
              Q::energy_norm,

@@ -111,7 +111,7 @@ namespace Friction
     , the_console(out,
                   parameters.output.times ? Console::Times::shown
                                           : Console::Times::hidden,
-                  parameters.output.verbosity == Verbosity::quiet,
+                  parameters.output.verbosity,
                   communicator)
     , history(directory.file("history.h5"),
               {parameters.name,
@@ -142,15 +142,41 @@ namespace Friction
     for (const std::string &warning :
          warnings_at_start(discretization, parameters))
       the_console.warning(warning);
+    new_warnings_about_loads(discretization);
     if (discretization.scene().n_load_steps() > 1 && !restarted)
-      begin_load_step(discretization.scene());
+      announce_load_step(discretization.scene());
   }
 
 
 
   template <int dim>
   void
-  RunOutput<dim>::begin_load_step(const Scene<dim> &scene)
+  RunOutput<dim>::begin_load_step(const Discretization<dim> &discretization)
+  {
+    announce_load_step(discretization.scene());
+    for (const std::string &warning : new_warnings_about_loads(discretization))
+      the_console.warning(warning);
+  }
+
+
+
+  template <int dim>
+  std::vector<std::string>
+  RunOutput<dim>::new_warnings_about_loads(
+    const Discretization<dim> &discretization)
+  {
+    std::vector<std::string> sentences;
+    for (const auto &[kind, sentence] : warnings_about_loads(discretization))
+      if (warned_about_loads.insert(kind).second)
+        sentences.push_back(sentence);
+    return sentences;
+  }
+
+
+
+  template <int dim>
+  void
+  RunOutput<dim>::announce_load_step(const Scene<dim> &scene)
   {
     if (scene.load_step() > 0 && history.levels().back().contact_nodes > 0)
       the_console.note(describe_quantities(history.levels().back()));
@@ -365,8 +391,9 @@ namespace Friction
                                           nest.scene().materials(),
                                           *exact,
                                           nest.displacement()),
-                      parameters.refinement.strategy ==
-                        RefinementStrategy::uniform);
+                      /*with_order =*/parameters.refinement.strategy ==
+                          RefinementStrategy::uniform &&
+                        nest.scene().load_step() == 0);
   }
 
 

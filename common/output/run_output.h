@@ -16,6 +16,7 @@
 
 #include <functional>
 #include <ostream>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -76,8 +77,9 @@ namespace Friction
                    const ContactState        &state);
 
     /** Says that the next load step of a scene begins, after the quantities of
-     * the one before. */
-    void begin_load_step(const Scene<dim> &scene);
+     * the one before, and prints those of warnings_about_loads() that have not
+     * been true before. */
+    void begin_load_step(const Discretization<dim> &discretization);
 
     /// For remarks and progress, by any process; only those of the first count.
     Console &console();
@@ -156,6 +158,13 @@ namespace Friction
     const std::vector<LevelRecord> &levels() const;
 
   private:
+    void announce_load_step(const Scene<dim> &scene);
+
+    /// Those of warnings_about_loads() of a kind that has not been there yet,
+    /// which from now on it has.
+    std::vector<std::string>
+    new_warnings_about_loads(const Discretization<dim> &discretization);
+
     /// Numbers that change if the coarse mesh does.
     static std::pair<double, unsigned int>
     fingerprint(const Triangulation<dim> &triangulation);
@@ -180,7 +189,8 @@ namespace Friction
     Checkpoints           checkpoints;
     const unsigned int    groups; ///< a number for what sections speak of
 
-    std::string last_forces; ///< as a sentence
+    std::string           last_forces; ///< as a sentence
+    std::set<std::string> warned_about_loads;
 
     double last_exact_error = 0.;
     bool   restarted        = false;

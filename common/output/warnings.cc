@@ -1,3 +1,4 @@
+#include <common/contact/force_balance.h>
 #include <common/discretization/multilinear_cell.h>
 #include <common/output/mesh_warnings.h>
 #include <common/output/penetration.h>
@@ -20,7 +21,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <set>
 #include <utility>
 
 namespace Friction
@@ -352,22 +352,10 @@ namespace Friction
 
       // Not those of the boundary that a point is on as well: of the obstacle,
       // and of what is prescribed there.
-      std::set<types::global_dof_index> others;
+      const unsigned int        nobody  = scene.dirichlet_conditions().size();
+      std::vector<unsigned int> holders = find_holders(discretization);
       for (const ContactNode<dim> &p : discretization.contact())
-        for (unsigned int d = 0; d < dim; ++d)
-          others.insert(
-            constraints.partitioner()->local_to_global(dim * p.node + d));
-      for (const auto &cell :
-           discretization.dof_handler().active_cell_iterators())
-        if (!cell->is_artificial())
-          for (const unsigned int f : cell->face_indices())
-            for (const auto &condition : scene.dirichlet_conditions())
-              if (cell->at_boundary(f) &&
-                  cell->face(f)->boundary_id() == condition.boundary_id)
-                for (const unsigned int v : cell->face(f)->vertex_indices())
-                  for (unsigned int d = 0; d < dim; ++d)
-                    if (condition.components[d])
-                      others.insert(cell->face(f)->vertex_dof_index(v, d));
+        std::fill_n(holders.begin() + dim * p.node, dim, nobody + 1);
 
       Point<dim> where;
       for (const auto &cell :
@@ -375,12 +363,13 @@ namespace Friction
         if (cell->is_locally_owned())
           scene.for_each_pin(
             cell, [&](const PinnedPoint<dim> &pin, const unsigned int v) {
-              const auto dof = cell->vertex_dof_index(v, pin.component);
-              if (constraints.partitioner()->in_local_range(dof) &&
-                  others.count(dof) == 0 &&
-                  std::abs(force(dof)) > largest_force)
+              const unsigned int i =
+                dim * constraints.node_of_dof(cell->vertex_dof_index(v, 0)) +
+                pin.component;
+              if (i < holders.size() && holders[i] == nobody &&
+                  std::abs(force.local_element(i)) > largest_force)
                 {
-                  largest_force = std::abs(force(dof));
+                  largest_force = std::abs(force.local_element(i));
                   where         = pin.point;
                 }
             });
@@ -422,6 +411,32 @@ namespace Friction
 
 
   template <int dim>
+  std::vector<LoadWarning>
+  warnings_about_loads(const Discretization<dim> &discretization)
+  {
+    const Scene<dim>        &scene = discretization.scene();
+    std::vector<LoadWarning> warnings;
+    const std::string        about_scene =
+      scene.warning(discretization.contact().largest_coefficient());
+    if (!about_scene.empty())
+      warnings.push_back({"scene", about_scene});
+    std::vector<std::string> sentences;
+    warn_of_useless_tractions(discretization, sentences);
+    for (const std::string &sentence : sentences)
+      warnings.push_back({sentence, sentence});
+    sentences.clear();
+    warn_of_contradictions(discretization.dof_handler().get_triangulation(),
+                           scene,
+                           discretization.body_size(),
+                           sentences);
+    for (const std::string &sentence : sentences)
+      warnings.push_back({"contradiction", sentence});
+    return warnings;
+  }
+
+
+
+  template <int dim>
   std::vector<std::string>
   warnings_at_start(const Discretization<dim> &discretization,
                     const Parameters          &parameters)
@@ -446,14 +461,10 @@ namespace Friction
       warnings.insert(warnings.end(),
                       parameters.warnings_in_two_dimensions.begin(),
                       parameters.warnings_in_two_dimensions.end());
-    const std::string about_scene =
-      scene.warning(discretization.contact().largest_coefficient());
-    if (!about_scene.empty())
-      warnings.push_back(about_scene);
-    warn_of_useless_tractions(discretization, warnings);
+    for (const LoadWarning &warning : warnings_about_loads(discretization))
+      warnings.push_back(warning.sentence);
     warn_of_materials(discretization, warnings);
     warn_of_digits<dim>(mesh, communicator, warnings);
-    warn_of_contradictions(mesh, scene, discretization.body_size(), warnings);
     for (const std::string &sentence : warnings_about_cuts(mesh))
       warnings.push_back(sentence);
     const bool is_refined = parameters.refinement.initial_refinements > 0 ||
@@ -693,6 +704,10 @@ namespace Friction
   warnings_about_regions(const Discretization<2> &, const std::string &);
   template std::vector<std::string>
   warnings_about_regions(const Discretization<3> &, const std::string &);
+  template std::vector<LoadWarning>
+  warnings_about_loads(const Discretization<2> &);
+  template std::vector<LoadWarning>
+  warnings_about_loads(const Discretization<3> &);
   template std::vector<std::string> warnings_at_start(const Discretization<2> &,
                                                       const Parameters &);
   template std::vector<std::string> warnings_at_start(const Discretization<3> &,

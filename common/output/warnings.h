@@ -17,14 +17,12 @@ namespace Friction
 
   /**
    * About the scene, the mesh and the contact boundary, before anything is
-   * solved: what Parameters::warnings and Scene::warning() say, and
+   * solved: what Parameters::warnings say, warnings_about_loads(), and
    * - where the coarse mesh is cut, see Seam, and parts that it consists of;
-   * - tractions where displacements are prescribed;
    * - materials for which elements lock, or which are so far apart that
    *   rounding errors of one are the stiffness of the other;
    * - edges of cells so short, or a body so far from the origin, that
    *   coordinates have lost digits;
-   * - displacements of two boundaries that contradict each other in a node;
    * - a contact boundary from a mesh file that is a polygon and stays one,
    *   however fine the mesh;
    * - a contact boundary of which no node faces the obstacle;
@@ -35,6 +33,22 @@ namespace Friction
   std::vector<std::string>
   warnings_at_start(const Discretization<dim> &discretization,
                     const Parameters          &parameters);
+
+  /** A warning about what may be otherwise in each load step. */
+  struct LoadWarning
+  {
+    /// The same for sentences that differ in numbers only: one of them is
+    /// enough.
+    std::string kind;
+    std::string sentence;
+  };
+
+  /** Those of warnings_at_start() that depend on the time of the scene:
+   * Scene::warning(), tractions where displacements are prescribed, and
+   * displacements that contradict each other. */
+  template <int dim>
+  std::vector<LoadWarning>
+  warnings_about_loads(const Discretization<dim> &discretization);
 
   /**
    * Regions of 'Material/Regions' whose material no cell of the mesh has.

@@ -177,16 +177,13 @@ namespace Friction
             throw InputError(here + "'" + excerpt(numbers[2]) +
                              "' as volumetric strain; take 'mean' or "
                              "'pointwise'.");
-          const std::string where = "where ";
-          if (text.key.compare(0, where.size(), where) == 0)
-            {
-              const std::string condition = text.key.substr(where.size());
-              if (!has_comparison(parameters.expressions.expand(condition)))
-                throw InputError(subject + ": '" + excerpt(condition) +
-                                 "' compares nothing, and would be true "
-                                 "wherever it is not zero; write a condition, "
-                                 "as in 'where y > 0.9: 100*E, nu'.");
-            }
+          const auto condition = condition_of_region(text.key);
+          if (condition &&
+              !has_comparison(parameters.expressions.expand(*condition)))
+            throw InputError(subject + ": '" + excerpt(*condition) +
+                             "' compares nothing, and would be true "
+                             "wherever it is not zero; write a condition, "
+                             "as in 'where y > 0.9: 100*E, nu'.");
           const double E = parameters.expressions.evaluate(numbers[0], subject);
           const double nu =
             parameters.expressions.evaluate(numbers[1], subject);
@@ -525,6 +522,8 @@ namespace Friction
       for (const std::string name : {"Length", "Layers"})
         only_with("Scene/" + name, geometry, {"cylinder", "half cylinder"});
       only_with("Scene/Coarse grid", geometry, {"cylinder"});
+      if (is_one_of(geometry, {"cylinder"}))
+        only_with("Scene/Layers", "Scene/Coarse grid", {"O-grid"});
       std::vector<unsigned int> numbers = {1};
       numbers.insert(numbers.end(),
                      values.further_contacts().begin(),

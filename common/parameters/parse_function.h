@@ -13,6 +13,7 @@
 
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -82,6 +83,18 @@ namespace Friction
               ++i;
           }
       }
+  }
+
+  /** The condition in the name of a region, if it is one: 'where' and an
+   * expression. Otherwise the name is what a mesh file calls it. */
+  inline std::optional<std::string>
+  condition_of_region(const std::string &key)
+  {
+    const std::string word = "where";
+    if (key.compare(0, word.size(), word) != 0 || key.size() == word.size() ||
+        std::string(" \t(").find(key[word.size()]) == std::string::npos)
+      return {};
+    return dealii::Utilities::trim(key.substr(word.size()));
   }
 
   /** Whether an expression compares anything, at any depth of parentheses. */

@@ -244,6 +244,9 @@ namespace Friction
               value[d] =
                 parameters.expressions.evaluate(text.components[d], where);
             }
+        if (n_free == dim)
+          throw InputError(where + ": all components of " + excerpt(text.key) +
+                           " are free; pin one, or leave this point out.");
         if (angle != 0. && n_free > 0)
           throw InputError(where +
                            " leaves a component free, which is not possible "
@@ -503,20 +506,29 @@ namespace Friction
   {
     Assert(step < n_load_steps(), ExcIndexRange(step, 0, n_load_steps()));
     present_step = step;
+    set_times(step);
+  }
+
+
+
+  template <int dim>
+  void
+  Scene<dim>::set_times(const unsigned int step) const
+  {
     for (const auto &function : functions_of_time)
-      function->set_time(time());
+      function->set_time(time(step));
   }
 
 
 
   template <int dim>
   std::string
-  Scene<dim>::at_time() const
+  Scene<dim>::at_time(const unsigned int step) const
   {
     if (n_load_steps() == 1)
       return "";
     std::ostringstream text;
-    text << " at the time t = " << time();
+    text << " at the time t = " << time(step);
     return text.str();
   }
 
@@ -554,18 +566,13 @@ namespace Friction
   Scene<dim>::read_regions()
   {
     const std::string where = subject() + "'Material/Regions'";
-    const std::string word  = "where";
     for (const auto &region : parameters.regions)
-      if (region.key.compare(0, word.size(), word) == 0 &&
-          region.key.size() > word.size() &&
-          std::string(" \t(").find(region.key[word.size()]) !=
-            std::string::npos)
-        the_materials.add_region(
-          make_function({Utilities::trim(region.key.substr(word.size()))},
-                        where,
-                        -largest_number,
-                        /*with_time =*/false),
-          region.material);
+      if (const auto condition = condition_of_region(region.key))
+        the_materials.add_region(make_function({*condition},
+                                               where,
+                                               -largest_number,
+                                               /*with_time =*/false),
+                                 region.material);
       else
         the_materials.add_region(read_material_id(region.key, where),
                                  region.material);
@@ -695,7 +702,7 @@ namespace Friction
 
 
   // What is pinned is a vertex. It may lie on a boundary with prescribed
-  // displacements, but not be prescribed to go somewhere else.
+  // displacements, but not be prescribed to go somewhere else, at any time.
   template <int dim>
   void
   Scene<dim>::check_pinned_points(const Triangulation<dim> &mesh,
@@ -703,35 +710,45 @@ namespace Friction
   {
     if (pinned.empty())
       return;
+    const double size = body_size();
+    // Also if an exception is thrown.
+    const std::shared_ptr<void> restores_times(
+      nullptr, [&](void *) { set_times(present_step); });
+    const auto check = [&](const PinnedPoint<dim>        &pin,
+                           const DirichletCondition<dim> &condition) {
+      for (unsigned int step = 0; step < n_load_steps(); ++step)
+        {
+          set_times(step);
+          const double value =
+            condition.displacement->value(pin.point, pin.component);
+          const double rounding =
+            1e-8 * (std::abs(value) + std::abs(pin.value)) + 1e-12 * size;
+          const bool is_moved = condition.platen != nullptr &&
+            condition.platen->is_controlled[pin.component];
+          if (is_moved || std::abs(value - pin.value) > rounding)
+            throw InputError(
+              here +
+              "'Boundary conditions/Pinned points' and 'Boundary "
+              "conditions/Displacement' contradict each other in a "
+              "vertex of boundary id " +
+              std::to_string(condition.boundary_id) + at_time(step) +
+              "; remove one of them.");
+        }
+    };
     std::set<const PinnedPoint<dim> *> found;
     for (const auto &cell : mesh.active_cell_iterators())
-      for_each_pin(
-        cell, [&](const PinnedPoint<dim> &pin, const unsigned int v) {
-          found.insert(&pin);
-          for (const auto &face : cell->face_iterators())
-            for (const auto &condition : dirichlet)
-              if (face->at_boundary() &&
-                  face->boundary_id() == condition.boundary_id &&
-                  condition.components[pin.component])
-                for (const unsigned int w : face->vertex_indices())
-                  if (face->vertex_index(w) == cell->vertex_index(v))
-                    {
-                      const double value =
-                        condition.displacement->value(pin.point, pin.component);
-                      const bool is_moved = condition.platen != nullptr &&
-                        condition.platen->is_controlled[pin.component];
-                      if (is_moved ||
-                          std::abs(value - pin.value) >
-                            1e-8 * (std::abs(value) + std::abs(pin.value)))
-                        throw InputError(
-                          here +
-                          "'Boundary conditions/Pinned points' and 'Boundary "
-                          "conditions/Displacement' contradict each other in a "
-                          "vertex of boundary id " +
-                          std::to_string(condition.boundary_id) +
-                          "; remove one of them.");
-                    }
-        });
+      for_each_pin(cell,
+                   [&](const PinnedPoint<dim> &pin, const unsigned int v) {
+                     found.insert(&pin);
+                     for (const auto &face : cell->face_iterators())
+                       for (const auto &condition : dirichlet)
+                         if (face->at_boundary() &&
+                             face->boundary_id() == condition.boundary_id &&
+                             condition.components[pin.component])
+                           for (const unsigned int w : face->vertex_indices())
+                             if (face->vertex_index(w) == cell->vertex_index(v))
+                               check(pin, condition);
+                   });
     if (found.size() < pinned.size())
       throw InputError(here +
                        "'Boundary conditions/Pinned points' names a point "

@@ -228,8 +228,15 @@ namespace Friction
       return "scene '" + parameters.name + "': ";
     }
 
-    /// " at the time t = 2", or nothing if there is no history.
-    std::string at_time() const;
+    /// " at the time t = 2" of a step, or nothing if there is no history.
+    std::string at_time(const unsigned int step) const;
+
+    /// The same of the present step.
+    std::string
+    at_time() const
+    {
+      return at_time(present_step);
+    }
 
     /// As sentences begin about what may be otherwise at other times.
     std::string
@@ -346,6 +353,9 @@ namespace Friction
 
     /// The coarse mesh on one process, checked.
     void make_serial_mesh(Triangulation<dim> &mesh) const;
+
+    /// Has all functions take the time of a step.
+    void set_times(const unsigned int step) const;
 
     void check_pinned_points(const Triangulation<dim> &mesh,
                              const std::string        &here) const;

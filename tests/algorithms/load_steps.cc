@@ -140,7 +140,7 @@ namespace test_load_steps
         {
           if (nest.scene().load_step() > 0)
             {
-              output.begin_load_step(nest.scene());
+              output.begin_load_step(nest.discretization());
               solve();
             }
           const unsigned int n_sticking =

@@ -41,18 +41,21 @@ TEST(console)
   levels[1].level = 1;
   repeated.repeat(levels, console.notes());
 
-  Console silent(std::cout, Console::Times::shown, true);
+  Console silent(std::cout, Console::Times::shown, Verbosity::quiet);
   silent.level_complete(LevelRecord());
   silent.note("nobody reads this");
 
   // Rows come within a second each, and then none for more than five.
   std::ostringstream file;
   Console            followed(file, Console::Times::shown);
+  std::ostringstream rows;
+  Console            table(rows, Console::Times::shown, Verbosity::levels);
   const auto         wait = [&](const unsigned int tenths) {
     for (unsigned int i = 1; i <= tenths; ++i)
       {
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
         followed.progress(2, i, 1e-3);
+        table.progress(2, i, 1e-3);
       }
   };
   wait(8);
@@ -70,5 +73,6 @@ TEST(console)
                     text.back() == '\n'
                   ? "some"
                   : "none")
+            << ", with rows only " << (rows.str().empty() ? "none" : "some")
             << std::endl;
 }
