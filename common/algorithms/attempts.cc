@@ -40,10 +40,8 @@ namespace Friction
                                              const Search           &search)
     : solver(solver)
     , search(search)
-    , problem(solver.problem)
-    , comm(problem.communicator())
-    , coulomb(problem.has_coulomb_friction())
-    , algorithm(name_of(problem, solver.settings))
+    , coulomb(solver.problem.has_coulomb_friction())
+    , algorithm(name_of(solver.problem, solver.settings))
     , begin_with(solver.next_method)
     , initial(search.u)
     , initial_state(search.state)
@@ -334,6 +332,7 @@ namespace Friction
   {
     const SolverSettings &settings      = solver.settings;
     const bool            much_friction = solver.much_friction();
+    const MPI_Comm        comm          = solver.problem.communicator();
     const PhaseCosts      before        = phase_costs(comm);
 
     // Here it is known beforehand what coarse levels are worth.
@@ -343,9 +342,6 @@ namespace Friction
     try_contact_nodes_alone();
     try_what_knows_the_law();
     try_what_has_solved_the_mesh_before();
-
-    // Whether the algorithm of the settings is enough by itself.
-    bool is_enough = false;
 
     // Whether there is something else to try soon.
     const bool may_aggregate = !report.converged && !is_aggregate &&
@@ -364,7 +360,6 @@ namespace Friction
         if (report.converged && !is_newton && solver.has_defaults() &&
             much_friction && report.cycles.size() > many_for_the_next)
           solver.next_method = Method::newton;
-        is_enough = report.converged && attempts.size() == 1;
       }
 
     // Without much friction hardly anything but coarse levels can be to blame;
@@ -400,7 +395,9 @@ namespace Friction
         certify(report, solver.iteration.functional(), search.u, search.state);
       }
     report.cycles = cycles;
-    if (!is_enough || report.finished_by_newton)
+    // The algorithm of the settings may be enough, and nothing to speak of.
+    if (!report.converged || attempts.size() > 1 ||
+        attempts[0].name != algorithm)
       report.attempts = attempts;
     report.costs       = phase_costs(comm) - before;
     report.next_method = solver.next_method;

@@ -22,8 +22,6 @@ namespace Friction
   private:
     SafeguardedSolver<dim> &solver;
     const Search           &search;
-    DiscreteProblem<dim>   &problem;
-    const MPI_Comm          comm;
     const bool              coulomb;
     const std::string       algorithm; // its name
     const Method            begin_with;

@@ -261,9 +261,6 @@ namespace Friction
   CondensedSolver<dim>::keep_zone()
   {
     condensation.reset();
-    number.resize(positions.size());
-    for (unsigned int i = 0, k = 0; i < number.size(); ++i)
-      number[i] = zone->nodes()[i] ? k++ : 0;
     tree = std::make_unique<EliminationTree>(
       matrix->sparsity(), positions, zone->nodes(), is_absent);
     if (!is_worthwhile(most_cycles))
@@ -314,21 +311,6 @@ namespace Friction
 
 
   template <int dim>
-  void
-  CondensedSolver<dim>::move_out_of_obstacle(VectorType &u) const
-  {
-    for (const ContactNode<dim> &p : problem.contact)
-      {
-        const double depth = normal_component(p, u) - p.gap;
-        if (depth > 0.)
-          for (unsigned int d = 0; d < dim; ++d)
-            u.local_element(dim * p.node + d) -= depth * p.normal()[d];
-      }
-  }
-
-
-
-  template <int dim>
   bool
   CondensedSolver<dim>::is_worthwhile(const double n_cycles) const
   {
@@ -363,7 +345,11 @@ namespace Friction
             own_values.push_back(u.local_element(dim * p.node + d));
           own_measures.push_back(problem.face_measures[p.node]);
           nodes.push_back(p);
-          nodes.back().node = number[numbering.global(p.node)];
+          // In the zone all nodes are kept, in ascending order.
+          nodes.back().node = std::lower_bound(kept.begin(),
+                                               kept.end(),
+                                               numbering.global(p.node)) -
+            kept.begin();
         }
     nodes                              = gather_from_all(nodes, comm);
     const std::vector<double> at_nodes = gather_from_all(own_values, comm),
@@ -414,8 +400,6 @@ namespace Friction
   {
     Assert(is_worthwhile(most_cycles),
            ExcMessage("Ask is_worthwhile() first."));
-    const MPI_Comm         comm        = problem.communicator();
-    const PhaseCosts       before      = phase_costs(comm);
     const VectorType       start       = x.u;
     const ContactState     start_state = x.state;
     std::vector<CycleInfo> cycles;
@@ -447,16 +431,15 @@ namespace Friction
 
     if (!report.converged)
       {
-        move_out_of_obstacle(x.u);
+        for (const ContactNode<dim> &p : problem.contact)
+          move_out_of_obstacle(p, x.u);
         certify(report, functional, x.u, x.state);
       }
     // Cycles over levels contract otherwise, and these are no outer iterations
     // of the whole body.
     report.pace = 0.;
     report.outer_changes.clear();
-    report.cycles        = cycles;
-    report.costs         = phase_costs(comm) - before;
-    report.matrix_memory = problem.stiffness.memory_consumption();
+    report.cycles = cycles;
     return report;
   }
 

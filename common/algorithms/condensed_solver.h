@@ -117,9 +117,8 @@ namespace Friction
     std::vector<std::array<double, 3>> positions;
     std::vector<char>                  is_held, is_absent;
 
-    // Nodes in the zone are kept, and have a number among those.
+    // Nodes in the zone are kept.
     std::unique_ptr<ContactZone<dim>>  zone;
-    std::vector<unsigned int>          number;
     std::unique_ptr<EliminationTree>   tree;
     std::unique_ptr<Condensation<dim>> condensation;
     bool                               has_failed = false;
@@ -132,8 +131,6 @@ namespace Friction
     bool grow_zone(const Iterate &x);
     void keep_zone();
     bool factorize();
-
-    void move_out_of_obstacle(VectorType &u) const;
 
     // What happens in the zone as it is.
     SolverReport solve_in_zone(const TrescaFunctional<dim> &functional,

@@ -76,7 +76,6 @@ namespace Friction
     if (!(report.certificate.largest() <= settings.certificate_tolerance))
       report.converged = false;
     report.costs         = phase_costs(problem.communicator()) - before;
-    report.matrix_memory = problem.stiffness.memory_consumption();
     report.solver_memory = iteration.memory_consumption();
     return report;
   }

@@ -36,6 +36,8 @@ namespace Friction
    * until something is met. Of a single position an interval is known from what
    * has been tried, since the force grows with it; the interval is halved where
    * the secant method is no good.
+   *
+   * If the scene has no platens, nothing here does anything.
    */
   template <int dim>
   class ForceControl
@@ -45,13 +47,6 @@ namespace Friction
 
     /** @param scene  whose platens are moved; kept by reference. */
     explicit ForceControl(Scene<dim> &scene);
-
-    /** Whether the scene has platens; if not, nothing here does anything. */
-    bool
-    has_platens() const
-    {
-      return !controls.empty();
-    }
 
     /**
      * Solves, compares forces, moves platens, and solves again, until each

@@ -19,11 +19,8 @@ namespace Friction
       for (unsigned int p = 0; p < contact.size(); ++p)
         {
           const ContactNode<dim> &node   = contact[p];
-          const double            excess = normal_component(node, u) - node.gap;
-          if (excess > 0)
-            for (unsigned int d = 0; d < dim; ++d)
-              u.local_element(dim * node.node + d) -= excess * node.normal()[d];
-          const auto &given =
+          const double            excess = move_out_of_obstacle(node, u);
+          const auto             &given =
             scene.contact_conditions()[node.condition].friction_bound;
           const double stress = given != nullptr
             ? given->value(node.point)

@@ -1,7 +1,6 @@
 #include <common/algorithms/newton_solver.h>
 #include <common/parallel/owned_values.h>
 #include <common/parallel/reductions.h>
-#include <common/parallel/run_clock.h>
 
 #include <algorithm>
 #include <array>
@@ -243,17 +242,12 @@ namespace Friction
                   const Progress        &progress)
   {
     const TrescaFunctional<dim> &functional = newton.tresca_functional();
-    const MPI_Comm   comm   = functional.discrete_problem().communicator();
-    const PhaseCosts before = phase_costs(comm);
-    SolverReport     report;
+    SolverReport                 report;
     report.set_result(newton.solve(u, state, limits.limits, progress));
     report.pace = 0.;
     certify(report, functional, u, state);
     if (!(report.certificate.largest() <= limits.certificate_tolerance))
       report.converged = false;
-    report.costs = phase_costs(comm) - before;
-    report.matrix_memory =
-      functional.discrete_problem().stiffness.memory_consumption();
     report.solver_memory = newton.memory_consumption();
     return report;
   }

@@ -86,12 +86,11 @@ namespace Friction
 
     Certificate certificate;
 
-    /// What this process has spent on the solution, by phase.
+    /// What this process has spent on the solution, by phase; counted by
+    /// CoulombSolver and SafeguardedSolver.
     PhaseCosts costs{};
 
-    /// Bytes on this process: of the leaf matrix, and of smoother and
-    /// correction.
-    std::size_t matrix_memory = 0;
+    /// Bytes on this process, of smoother and correction.
     std::size_t solver_memory = 0;
 
     /// The energy of the solution, and its residual f - A u at all nodes.

@@ -1,7 +1,7 @@
 #include <common/discretization/contact_boundary.h>
+#include <common/input_error.h>
 #include <common/parallel/collective_error.h>
 #include <common/parallel/reductions.h>
-#include <common/parameters/wrong_number.h>
 #include <common/printable.h>
 
 #include <deal.II/base/quadrature_lib.h>
@@ -345,7 +345,7 @@ namespace Friction
             coordinates(node.point) +
             ", which also lies on the contact boundary, pushes it into the "
             "obstacle by " +
-            std::to_string(prescribed_value * normal - gap) +
+            number(prescribed_value * normal - gap) +
             ": prescribe a smaller displacement there (a platen with a given "
             "force prescribes one as well) or end the contact boundary before "
             "that node, or set '" +

@@ -194,6 +194,19 @@ namespace Friction
     return sum;
   }
 
+  /** Moves a contact node out of the obstacle, along its normal. Returns how
+   * far it was in it, which is not positive if it was not. */
+  template <int dim>
+  double
+  move_out_of_obstacle(const ContactNode<dim> &p, VectorType &u)
+  {
+    const double excess = normal_component(p, u) - p.gap;
+    if (excess > 0)
+      for (unsigned int d = 0; d < dim; ++d)
+        u.local_element(dim * p.node + d) -= excess * p.normal()[d];
+    return excess;
+  }
+
   /** The tangential components of the value at a contact node, in its frame. */
   template <int dim>
   std::array<double, dim - 1>

@@ -18,7 +18,6 @@
 #include <deal.II/lac/vector.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>

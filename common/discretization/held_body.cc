@@ -4,7 +4,6 @@
 #include <common/scene/rigid_motions.h>
 
 #include <deal.II/base/geometry_info.h>
-#include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 
 #include <deal.II/fe/fe_q.h>
@@ -12,7 +11,6 @@
 
 #include <algorithm>
 #include <map>
-#include <string>
 #include <vector>
 
 namespace Friction
@@ -173,7 +171,7 @@ namespace Friction
         difference,
         (discretization.contact()[p].normal() - other_normals[p]).norm());
     const bool other_normals_differ =
-      Utilities::MPI::max(difference, communicator) > 1e-12;
+      max_over_processes(difference, communicator) > 1e-12;
 
     for (const FreePart<dim> &part : parts)
       {
@@ -190,11 +188,7 @@ namespace Friction
                     motions(d, i) * forces.local_element(dim * node + d);
             }
         // All processes come to the same conclusion.
-        work = [&]() {
-          std::vector<double> sums(k);
-          Utilities::MPI::sum(work, communicator, sums);
-          return sums;
-        }();
+        sum_over_processes(work, communicator);
         const Eigen::VectorXd loads =
           Eigen::Map<const Eigen::VectorXd>(work.data(), k);
 

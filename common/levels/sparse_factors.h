@@ -33,9 +33,6 @@ namespace Friction
      */
     bool factorize(const TrilinosWrappers::SparseMatrix &matrix);
 
-    /** Frees the memory of the factors. */
-    void clear();
-
     /** A x = b. Collective. */
     void solve(VectorType &x, const VectorType &b) const;
 

@@ -214,7 +214,7 @@ namespace Friction
     LevelRecords<dim> records;
 
     records.costs         = report.costs;
-    records.matrix_memory = report.matrix_memory;
+    records.matrix_memory = discretization.stiffness().memory_consumption();
     records.solver_memory = report.solver_memory;
     LevelRecord &record   = records.level;
     record.level          = level;

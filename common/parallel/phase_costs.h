@@ -46,10 +46,10 @@ namespace Friction
   /**
    * What this process has spent on one discrete problem, by phase.
    *
-   * Communication is counted where it happens, in GhostExchange and in the
-   * reductions of reductions.h, rather than estimated. What Trilinos sends
-   * while it solves the coarsest problem, and what deal.II sends, is not seen
-   * here.
+   * Communication is counted where it happens, in GhostExchange, in the
+   * reductions of reductions.h, in the updates of LevelMatrices and in the
+   * scalar products of AlgebraicSolver, rather than estimated. What else
+   * Trilinos and deal.II send is not seen here.
    *
    * The account is attached to a communicator (see SolverCommunicator), and
    * found again by all that is given this communicator.

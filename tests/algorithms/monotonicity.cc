@@ -128,12 +128,7 @@ namespace test_monotonicity
       VectorType u = admissible_start(discretization);
       u.add(0.3 * length, random_direction());
       for (const ContactNode<dim> &node : discretization.contact())
-        {
-          const double excess = normal_component(node, u) - node.gap;
-          if (excess > 0)
-            for (unsigned int d = 0; d < dim; ++d)
-              u.local_element(dim * node.node + d) -= excess * node.normal()[d];
-        }
+        move_out_of_obstacle(node, u);
       return u;
     }
 

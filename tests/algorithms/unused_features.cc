@@ -116,7 +116,8 @@ namespace test_unused_features
             counts.bytes += cost.bytes;
             counts.reductions += cost.reductions;
           }
-        counts.matrix_memory += report.matrix_memory;
+        counts.matrix_memory +=
+          nest.discretization().stiffness().memory_consumption();
         counts.solver_memory += report.solver_memory;
     } while (nest.advance());
     nest.begin_next_load_step();

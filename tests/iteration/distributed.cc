@@ -413,11 +413,8 @@ namespace test_distributed
     };
     for (unsigned int p = 0; p < d.contact().size(); ++p)
       {
-        const ContactNode<dim> &node   = d.contact()[p];
-        const double            excess = normal_component(node, u) - node.gap;
-        if (excess > 0)
-          for (unsigned int c = 0; c < dim; ++c)
-            u.local_element(dim * node.node + c) -= excess * node.normal()[c];
+        const ContactNode<dim> &node = d.contact()[p];
+        move_out_of_obstacle(node, u);
         state.set_normal_force(p, bound_at(node));
       }
     for (unsigned int p = 0; p < e.contact().size(); ++p)

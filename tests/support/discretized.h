@@ -39,12 +39,7 @@ namespace Tests
     VectorType u = d.vector();
     d.constraints().impose(u);
     for (const ContactNode<dim> &node : d.contact())
-      {
-        const double excess = normal_component(node, u) - node.gap;
-        if (excess > 0)
-          for (unsigned int c = 0; c < dim; ++c)
-            u.local_element(dim * node.node + c) -= excess * node.normal()[c];
-      }
+      move_out_of_obstacle(node, u);
     return u;
   }
 
