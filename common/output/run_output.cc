@@ -139,10 +139,14 @@ namespace Friction
   {
     if (!lock.warning().empty())
       the_console.warning(printable(lock.warning()));
+    const std::vector<LoadWarning> about_loads =
+      warnings_about_loads(discretization);
     for (const std::string &warning :
-         warnings_at_start(discretization, parameters))
+         warnings_at_start(discretization, parameters, about_loads))
       the_console.warning(warning);
-    new_warnings_about_loads(discretization);
+    // What is true from the beginning has been said.
+    for (const LoadWarning &warning : about_loads)
+      warned_about_loads.insert(warning.kind);
     if (discretization.scene().n_load_steps() > 1 && !restarted)
       announce_load_step(discretization.scene());
   }
@@ -154,22 +158,9 @@ namespace Friction
   RunOutput<dim>::begin_load_step(const Discretization<dim> &discretization)
   {
     announce_load_step(discretization.scene());
-    for (const std::string &warning : new_warnings_about_loads(discretization))
-      the_console.warning(warning);
-  }
-
-
-
-  template <int dim>
-  std::vector<std::string>
-  RunOutput<dim>::new_warnings_about_loads(
-    const Discretization<dim> &discretization)
-  {
-    std::vector<std::string> sentences;
     for (const auto &[kind, sentence] : warnings_about_loads(discretization))
       if (warned_about_loads.insert(kind).second)
-        sentences.push_back(sentence);
-    return sentences;
+        the_console.warning(sentence);
   }
 
 

@@ -160,11 +160,6 @@ namespace Friction
   private:
     void announce_load_step(const Scene<dim> &scene);
 
-    /// Those of warnings_about_loads() of a kind that has not been there yet,
-    /// which from now on it has.
-    std::vector<std::string>
-    new_warnings_about_loads(const Discretization<dim> &discretization);
-
     /// Numbers that change if the coarse mesh does.
     static std::pair<double, unsigned int>
     fingerprint(const Triangulation<dim> &triangulation);
@@ -189,8 +184,8 @@ namespace Friction
     Checkpoints           checkpoints;
     const unsigned int    groups; ///< a number for what sections speak of
 
-    std::string           last_forces; ///< as a sentence
-    std::set<std::string> warned_about_loads;
+    std::string           last_forces;        ///< as a sentence
+    std::set<std::string> warned_about_loads; ///< LoadWarning::kind
 
     double last_exact_error = 0.;
     bool   restarted        = false;

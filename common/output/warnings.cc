@@ -438,8 +438,9 @@ namespace Friction
 
   template <int dim>
   std::vector<std::string>
-  warnings_at_start(const Discretization<dim> &discretization,
-                    const Parameters          &parameters)
+  warnings_at_start(const Discretization<dim>      &discretization,
+                    const Parameters               &parameters,
+                    const std::vector<LoadWarning> &about_loads)
   {
     const Scene<dim> &scene = discretization.scene();
     const auto       &mesh  = discretization.dof_handler().get_triangulation();
@@ -461,7 +462,7 @@ namespace Friction
       warnings.insert(warnings.end(),
                       parameters.warnings_in_two_dimensions.begin(),
                       parameters.warnings_in_two_dimensions.end());
-    for (const LoadWarning &warning : warnings_about_loads(discretization))
+    for (const LoadWarning &warning : about_loads)
       warnings.push_back(warning.sentence);
     warn_of_materials(discretization, warnings);
     warn_of_digits<dim>(mesh, communicator, warnings);
@@ -708,10 +709,14 @@ namespace Friction
   warnings_about_loads(const Discretization<2> &);
   template std::vector<LoadWarning>
   warnings_about_loads(const Discretization<3> &);
-  template std::vector<std::string> warnings_at_start(const Discretization<2> &,
-                                                      const Parameters &);
-  template std::vector<std::string> warnings_at_start(const Discretization<3> &,
-                                                      const Parameters &);
+  template std::vector<std::string>
+  warnings_at_start(const Discretization<2> &,
+                    const Parameters &,
+                    const std::vector<LoadWarning> &);
+  template std::vector<std::string>
+                                    warnings_at_start(const Discretization<3> &,
+                                                      const Parameters &,
+                                                      const std::vector<LoadWarning> &);
   template ContactGeometry          contact_geometry(const Discretization<2> &,
                                                      const VectorType &,
                                                      const ContactState &);

@@ -15,9 +15,26 @@ namespace Friction
    * functions are collective, and return the same sentences on all processes.
    */
 
+  /** A warning about what may be otherwise in each load step. */
+  struct LoadWarning
+  {
+    /// The same for sentences that differ in numbers only: one of them is
+    /// enough.
+    std::string kind;
+    std::string sentence;
+  };
+
+  /** Those that depend on the time of the scene:
+   * Scene::warning(), tractions where displacements are prescribed, and
+   * displacements that contradict each other. */
+  template <int dim>
+  std::vector<LoadWarning>
+  warnings_about_loads(const Discretization<dim> &discretization);
+
   /**
    * About the scene, the mesh and the contact boundary, before anything is
-   * solved: what Parameters::warnings say, warnings_about_loads(), and
+   * solved: what Parameters::warnings say, @p about_loads, which are those of
+   * warnings_about_loads(), and
    * - where the coarse mesh is cut, see Seam, and parts that it consists of;
    * - materials for which elements lock, or which are so far apart that
    *   rounding errors of one are the stiffness of the other;
@@ -31,24 +48,9 @@ namespace Friction
    */
   template <int dim>
   std::vector<std::string>
-  warnings_at_start(const Discretization<dim> &discretization,
-                    const Parameters          &parameters);
-
-  /** A warning about what may be otherwise in each load step. */
-  struct LoadWarning
-  {
-    /// The same for sentences that differ in numbers only: one of them is
-    /// enough.
-    std::string kind;
-    std::string sentence;
-  };
-
-  /** Those of warnings_at_start() that depend on the time of the scene:
-   * Scene::warning(), tractions where displacements are prescribed, and
-   * displacements that contradict each other. */
-  template <int dim>
-  std::vector<LoadWarning>
-  warnings_about_loads(const Discretization<dim> &discretization);
+  warnings_at_start(const Discretization<dim>      &discretization,
+                    const Parameters               &parameters,
+                    const std::vector<LoadWarning> &about_loads);
 
   /**
    * Regions of 'Material/Regions' whose material no cell of the mesh has.

@@ -25,8 +25,8 @@ namespace Friction
     nest.make_guess(guess);
 
     const Discretization<dim> &discretization = nest.discretization();
-    std::vector<std::string>   warnings =
-      warnings_at_start(discretization, parameters);
+    std::vector<std::string>   warnings       = warnings_at_start(
+      discretization, parameters, warnings_about_loads(discretization));
     // A run says this in the end, of its last mesh.
     for (const std::string &warning :
          warnings_about_regions(discretization, "first"))
