@@ -18,7 +18,7 @@ namespace Friction
     // material: so many per unknown, and as many as it takes to go through the
     // levels, however small they are.
     template <int dim>
-    constexpr double per_unknown = (dim == 2 ? 500. : 2500.);
+    constexpr double per_unknown = (dim == 2 ? 700. : 5000.);
 
     constexpr double at_least = 3e5;
 
@@ -43,14 +43,16 @@ namespace Friction
 
 
 
-    // Unknowns up to which it is worth while to count multiplications. Factors
-    // in two dimensions have a kilobyte for each of them, and as much on each
-    // of several processes.
+    // Unknowns up to which it is worth while to count multiplications. For each
+    // of so many the factors have a kilobyte in two dimensions and twelve in
+    // three, and as much on each of several processes.
     template <int dim>
     types::global_dof_index
     largest(const MPI_Comm communicator)
     {
-      return dim == 3 ? 20000 : is_alone(communicator) ? 600000 : 60000;
+      if (is_alone(communicator))
+        return dim == 2 ? 600000 : 120000;
+      return dim == 2 ? 60000 : 40000;
     }
   } // namespace
 

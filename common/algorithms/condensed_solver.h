@@ -42,7 +42,7 @@ namespace Friction
   {
   public:
     /// Cycles beyond which it is never worth while.
-    static constexpr double most_cycles = 240.;
+    static constexpr double most_cycles = 400.;
 
     /**
      * Collective.

@@ -35,13 +35,14 @@ namespace Friction
     // where CondensedSolver is generous with multiplications per cycle. And
     // unknowns up to which that is possible.
     template <int dim>
-    constexpr double quick_cycles = (dim == 2 ? 4 : 3);
+    constexpr double quick_cycles = (dim == 2 ? 4 : 2);
 
     template <int dim>
     constexpr types::global_dof_index largest_quick = (dim == 2 ? 5000 : 8000);
 
-    // Where Newton's method would be next.
-    constexpr double cycles_of_newton = 36;
+    // Where Newton's method would be next, or levels made of the matrix, of
+    // which a cycle takes as long as several.
+    constexpr double cycles_of_newton = 36, cycles_of_aggregates = 60;
 
 
 
@@ -215,6 +216,16 @@ namespace Friction
           n_cycles = std::min(n_cycles, cycles_of_newton);
       }
     return contact_nodes_alone_take_less(search, n_cycles);
+  }
+
+
+
+  template <int dim>
+  bool
+  SafeguardedSolver<dim>::contact_nodes_alone_are_cheap(const Search &search)
+  {
+    return may_condense() &&
+      contact_nodes_alone_take_less(search, cycles_of_aggregates);
   }
 
 

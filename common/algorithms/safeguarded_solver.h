@@ -196,6 +196,10 @@ namespace Friction
     bool contact_nodes_alone_are_better(const Search &search,
                                         const bool    others_have_failed);
 
+    // Than levels made of the matrix, once it is known that those of the mesh
+    // do not suffice.
+    bool contact_nodes_alone_are_cheap(const Search &search);
+
     using Condensed = CondensedSolver<dim>;
 
     SolverReport solve_condensed(const Search                &search,

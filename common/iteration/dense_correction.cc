@@ -1,8 +1,7 @@
 #include <common/iteration/dense_correction.h>
-
+#include <common/nodes/dense_kernels.h>
 #include <common/parallel/run_clock.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -35,10 +34,9 @@ namespace Friction
       {
         fill(shift);
         const unsigned int n = dim * problem.stiffness.blocks().n_rows();
-        Eigen::Map<Eigen::MatrixXd>             A(factor.data(), n, n);
+        const Eigen::Map<const Eigen::MatrixXd> A(factor.data(), n, n);
         const Eigen::VectorXd                   diagonal = A.diagonal();
-        Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> cholesky(A);
-        if (cholesky.info() == Eigen::Success &&
+        if (DenseKernels::eliminate(factor.data(), n, n) &&
             (A.diagonal().array().square() > 1e-14 * diagonal.array()).all())
           return;
       }

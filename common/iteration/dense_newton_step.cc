@@ -1,8 +1,8 @@
 #include <common/iteration/dense_newton_step.h>
+#include <common/nodes/dense_kernels.h>
 #include <common/parallel/run_clock.h>
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include <algorithm>
 
@@ -128,11 +128,11 @@ namespace Friction
     for (const double shift : {0., 1e-10})
       {
         fill(shift);
-        Eigen::Map<Eigen::MatrixXd> A(matrix.data(), n, n);
-        const Eigen::ArrayXd        largest =
+        const Eigen::Map<const Eigen::MatrixXd> A(matrix.data(), n, n);
+        const Eigen::ArrayXd                    largest =
           A.cwiseAbs().colwise().maxCoeff().transpose();
-        const Eigen::PartialPivLU<Eigen::Ref<Eigen::MatrixXd>> factors(A);
-        x = factors.solve(b);
+        x = b;
+        DenseKernels::solve(matrix.data(), x.data(), n);
         if ((A.diagonal().array().abs() > 1e-13 * largest).all())
           break;
       }

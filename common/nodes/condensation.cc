@@ -1,6 +1,6 @@
 #include <common/nodes/condensation.h>
+#include <common/nodes/dense_kernels.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -109,19 +109,12 @@ namespace Friction
             factors->kept = std::move(F);
             break;
           }
-        auto own = F.topLeftCorner(n_own, n_own);
-        Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> cholesky(own);
-        if (cholesky.info() != Eigen::Success ||
-            (own.diagonal().array().square() < rounding * diagonal.array())
+        if (!DenseKernels::eliminate(F.data(), n, n_own) ||
+            (F.diagonal().head(n_own).array().square() <
+             rounding * diagonal.array())
               .any())
           return false;
-        auto below = F.bottomLeftCorner(n - n_own, n_own);
-        own.transpose()
-          .template triangularView<Eigen::Upper>()
-          .template solveInPlace<Eigen::OnTheRight>(below);
-        borders[f] = F.bottomRightCorner(n - n_own, n - n_own);
-        borders[f].template selfadjointView<Eigen::Lower>().rankUpdate(below,
-                                                                       -1.);
+        borders[f]          = F.bottomRightCorner(n - n_own, n - n_own);
         factors->columns[f] = F.leftCols(n_own);
       }
     return true;

@@ -1,8 +1,5 @@
+#include <common/nodes/instructions.h>
 #include <common/nodes/row_kernels.h>
-
-#if defined(__x86_64__) && defined(__GNUC__)
-#  define FRICTION_AVX2 __attribute__((target("avx2,fma")))
-#endif
 
 namespace Friction
 {
@@ -335,10 +332,6 @@ namespace Friction
 
 
 
-      Instructions in_use = available_instructions().back();
-
-
-
 #ifdef FRICTION_AVX2
       // What is inlined into a function is compiled for the same instructions
       // as that function. The functions called in these are all inlined.
@@ -382,28 +375,6 @@ namespace Friction
 
 
 
-    std::vector<Instructions>
-    available_instructions()
-    {
-      std::vector<Instructions> available = {Instructions::common};
-#ifdef FRICTION_AVX2
-      __builtin_cpu_init();
-      if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-        available.push_back(Instructions::avx2);
-#endif
-      return available;
-    }
-
-
-
-    void
-    use(const Instructions instructions)
-    {
-      in_use = instructions;
-    }
-
-
-
     template <int dim>
     NodeValue<dim>
     times(const BlockRows<dim> &A,
@@ -413,7 +384,7 @@ namespace Friction
     {
       NodeValue<dim> product;
 #ifdef FRICTION_AVX2
-      if (in_use == Instructions::avx2)
+      if (instructions_in_use == Instructions::avx2)
         times_avx2<dim>(A, row, x, backwards, product.data());
       else
 #endif
@@ -432,7 +403,7 @@ namespace Friction
              const double         *x)
     {
 #ifdef FRICTION_AVX2
-      if (in_use == Instructions::avx2)
+      if (instructions_in_use == Instructions::avx2)
         return residual_avx2<dim>(A, loop, r, b, x);
 #endif
       residual_body<dim, TwoPairs>(A, loop, r, b, x);
@@ -449,7 +420,7 @@ namespace Friction
           double               *x)
     {
 #ifdef FRICTION_AVX2
-      if (in_use == Instructions::avx2)
+      if (instructions_in_use == Instructions::avx2)
         return relax_avx2<dim>(A, inverses, loop, b, x);
 #endif
       if (loop.backwards)

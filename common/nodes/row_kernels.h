@@ -60,28 +60,10 @@ namespace Friction
 
 
 
-  /**
-   * The three loops that a solution spends its time in, compiled several times,
-   * each for processors with other instructions. Which of them is run is found
-   * out when the program starts, so that a program that is made for all
-   * processors of a kind is as fast as one made for this one. Results differ in
-   * rounding.
-   */
+  /** The three loops that a solution spends its time in, compiled for several
+   * sets of Instructions. */
   namespace RowKernels
   {
-    enum class Instructions
-    {
-      common, ///< what every processor of this kind has
-      avx2    ///< x86-64: four numbers at a time, product and sum in one
-    };
-
-    /** What this processor has, in ascending order of speed. */
-    std::vector<Instructions> available_instructions();
-
-    /** Chooses among available_instructions(), the last of which are those to
-     * begin with. For tests and measurements. */
-    void use(const Instructions instructions);
-
     /** The rows that a kernel goes through, in which direction, and what it has
      * brought into the cache meanwhile. */
     struct RowLoop

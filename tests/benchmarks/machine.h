@@ -4,7 +4,7 @@
 #include <deal.II/base/timer.h>
 
 #include <common/nodes/huge_pages.h>
-#include <common/nodes/row_kernels.h>
+#include <common/nodes/instructions.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -97,9 +97,8 @@ namespace Benchmark
     unsigned int per_vector = 2;
     auto         work       = PeakArithmetic::common;
 #if defined(__x86_64__) && defined(__GNUC__)
-    using Friction::RowKernels::Instructions;
-    if (Friction::RowKernels::available_instructions().back() ==
-        Instructions::avx2)
+    if (Friction::available_instructions().back() ==
+        Friction::Instructions::avx2)
       {
         work       = PeakArithmetic::avx2;
         per_vector = 4;

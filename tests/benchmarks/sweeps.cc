@@ -14,6 +14,7 @@
 
 #include <common/algorithms/nested_iteration.h>
 #include <common/nodes/gauss_seidel.h>
+#include <common/nodes/instructions.h>
 
 #include <deal.II/base/timer.h>
 
@@ -175,15 +176,14 @@ namespace benchmark_sweeps
     GhostExchange             no_ghosts;
 
     // The program of each column, and of each row.
-    const std::vector<RowKernels::Instructions> instructions =
-      RowKernels::available_instructions();
-    const unsigned int n_columns = 1 + instructions.size();
-    const auto         sweep     = [&](const unsigned int column,
+    const std::vector<Instructions> instructions = available_instructions();
+    const unsigned int              n_columns    = 1 + instructions.size();
+    const auto                      sweep = [&](const unsigned int column,
                            const Sweeps      &sweeps,
                            const bool         with_residual) {
       if (column > 0)
         {
-          RowKernels::use(instructions[column - 1]);
+          instructions_in_use = instructions[column - 1];
           relaxation.run(sweeps,
                          b.data(),
                          x.data(),

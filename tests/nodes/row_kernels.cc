@@ -9,6 +9,7 @@
 // The memory that is asked for in large pages is like any other.
 
 #include <common/nodes/gauss_seidel.h>
+#include <common/nodes/instructions.h>
 #include <common/nodes/node_block_matrix.h>
 
 #include <iostream>
@@ -102,9 +103,9 @@ namespace test_row_kernels
                               start = random_vector(dim * n, random);
 
     double product_error = 0, residual_error = 0, sweep_error = 0;
-    for (const auto instructions : RowKernels::available_instructions())
+    for (const auto instructions : available_instructions())
       {
-        RowKernels::use(instructions);
+        instructions_in_use = instructions;
         std::vector<double> Ax(dim * n), r(dim * n), expected(dim * n);
         for (unsigned int i = 0; i < n; ++i)
           {
