@@ -366,10 +366,12 @@ namespace Friction
     // but not if only the outer iteration of Algorithm 2 has failed.
     const bool outer_failure = coulomb && report.inner_converged &&
       settings.algorithm == Algorithm::fixed_point;
-    if (may_aggregate && solver.contact_nodes_alone_are_cheap(search))
-      try_contact_nodes_alone();
     if (may_aggregate)
-      try_aggregates();
+      {
+        try_contact_nodes_alone();
+        try_what_knows_the_law();
+        try_aggregates();
+      }
     if (!outer_failure)
       {
         try_contact_nodes_alone();

@@ -31,16 +31,15 @@ namespace Friction
                       5. * std::sqrt(std::max(0., lame_ratio)));
     }
 
-    // And for any material, to a given tolerance; fewer in three dimensions,
-    // where CondensedSolver is generous with multiplications per cycle. And
-    // unknowns up to which that is possible.
+    // And for any material, to a given tolerance; and unknowns up to which that
+    // is possible.
     template <int dim>
     constexpr double quick_cycles = (dim == 2 ? 4 : 2);
 
     template <int dim>
     constexpr types::global_dof_index largest_quick = (dim == 2 ? 5000 : 8000);
 
-    // Where Newton's method would be next, or levels made of the matrix, of
+    // Where Newton's method would be next; and levels made of the matrix, of
     // which a cycle takes as long as several.
     constexpr double cycles_of_newton = 36, cycles_of_aggregates = 60;
 
@@ -204,28 +203,22 @@ namespace Friction
           (others_have_failed && !much_friction()) || materials_do_jump() ||
           mostly_lines_in_space()))
       return false;
+    const bool aggregates_are_left = others_have_failed &&
+      !aggregates_have_failed && coarse_cells_may_be_to_blame();
     double n_cycles = Condensed::most_cycles;
-    if (!others_have_failed)
+    if (!others_have_failed || aggregates_are_left)
       {
         n_cycles = std::min(n_cycles,
                             settings.energy_tolerance > 0.
                               ? cycles_to_expect<dim>
                               : cycles_to_the_end<dim>(settings.lame_ratio));
+        if (aggregates_are_left)
+          n_cycles = std::max(n_cycles, cycles_of_aggregates);
         // What fails there is left to Newton's method there.
         if (much_friction())
           n_cycles = std::min(n_cycles, cycles_of_newton);
       }
     return contact_nodes_alone_take_less(search, n_cycles);
-  }
-
-
-
-  template <int dim>
-  bool
-  SafeguardedSolver<dim>::contact_nodes_alone_are_cheap(const Search &search)
-  {
-    return may_condense() &&
-      contact_nodes_alone_take_less(search, cycles_of_aggregates);
   }
 
 

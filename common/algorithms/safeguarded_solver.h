@@ -37,7 +37,8 @@ namespace Friction
    * 3. the algorithm of the settings with AggregateCorrection, where there is
    *    not much friction and materials jump, or most nodes of a body in three
    *    dimensions are in lines of strong couplings: coarse functions do not
-   *    follow borders of materials within coarse cells;
+   *    follow borders of materials within coarse cells. Contact nodes alone
+   *    come before that if they take no longer than some tens of cycles;
    * 4. contact nodes alone, if that takes no longer than some hundreds of
    *    cycles, whatever the material where there is not much friction; and
    *    then, if 2. was given up early because there was 3. to try, 2. once
@@ -195,10 +196,6 @@ namespace Friction
 
     bool contact_nodes_alone_are_better(const Search &search,
                                         const bool    others_have_failed);
-
-    // Than levels made of the matrix, once it is known that those of the mesh
-    // do not suffice.
-    bool contact_nodes_alone_are_cheap(const Search &search);
 
     using Condensed = CondensedSolver<dim>;
 

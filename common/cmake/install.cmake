@@ -26,7 +26,8 @@ install(TARGETS friction EXPORT friction-targets
   INCLUDES DESTINATION ${_headers})
 install(DIRECTORY common DESTINATION ${_headers}
   FILES_MATCHING PATTERN "*.h"
-  PATTERN cmake EXCLUDE PATTERN plot EXCLUDE PATTERN precompiled.h EXCLUDE)
+  PATTERN cmake EXCLUDE PATTERN plot EXCLUDE PATTERN precompiled.h EXCLUDE
+  PATTERN dense_kernels_body.h EXCLUDE)
 foreach(_step step-friction-2d step-friction-3d)
   install(DIRECTORY ${_step}/scenes
     DESTINATION ${CMAKE_INSTALL_DATADIR}/friction/${_step})

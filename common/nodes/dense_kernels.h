@@ -6,7 +6,8 @@ namespace Friction
   /**
    * Factorisations of dense matrices, by Eigen, compiled for several sets of
    * Instructions: from some hundred rows on they take less than half of the
-   * time with AVX2. Matrices are stored column by column, without gaps.
+   * time with AVX2, for which GCC can compile them. Matrices are stored column
+   * by column, without gaps.
    */
   namespace DenseKernels
   {
@@ -31,7 +32,7 @@ namespace Friction
 
     /**
      * A x = b, by Gaussian elimination with partial pivoting.
-     * @param matrix  any, with n rows; on return its factors, U with its
+     * @param matrix  any, with n > 0 rows; on return its factors, U with its
      *                diagonal above the unit lower triangle.
      * @param x       n values of b; on return the solution.
      */

@@ -18,6 +18,8 @@ namespace Friction
                 const unsigned int n,
                 const unsigned int n_eliminated)
       {
+        if (n_eliminated == 0)
+          return true;
         Matrix     A(matrix, n, n);
         const auto n_left = n - n_eliminated;
         auto       own    = A.topLeftCorner(n_eliminated, n_eliminated);

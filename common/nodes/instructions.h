@@ -9,7 +9,8 @@
 #endif
 
 // Whether a file can be compiled so from some line on, which only GCC does.
-#if defined(FRICTION_AVX2) && !defined(__clang__)
+#if defined(FRICTION_AVX2) && !defined(__clang__) && \
+  !defined(__INTEL_COMPILER) && !defined(__NVCOMPILER)
 #  define FRICTION_AVX2_FILES
 #endif
 

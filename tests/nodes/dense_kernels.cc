@@ -73,7 +73,7 @@ namespace test_dense_kernels
     bool   succeeds = true, is_exact = true, leaves = true, notices = true;
     for (const Instructions instructions : available_instructions())
       for (const unsigned int n : sizes)
-        for (const unsigned int n_eliminated : {n, (n + 1) / 2, n / 3})
+        for (const unsigned int n_eliminated : {n, (n + 1) / 2, n / 3, 0u})
           {
             instructions_in_use = instructions;
             const Matrix A      = symmetric(n, true, random);
