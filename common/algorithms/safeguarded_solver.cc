@@ -212,7 +212,7 @@ namespace Friction
                             settings.energy_tolerance > 0.
                               ? cycles_to_expect<dim>
                               : cycles_to_the_end<dim>(settings.lame_ratio));
-        if (aggregates_are_left)
+        if (aggregates_are_left && settings.energy_tolerance == 0.)
           n_cycles = std::max(n_cycles, cycles_of_aggregates);
         // What fails there is left to Newton's method there.
         if (much_friction())

@@ -13,8 +13,7 @@ namespace Friction
   {
     /**
      * Eliminates the first unknowns of a symmetric matrix, of which only the
-     * lower triangle is read and written. With
-     * @f$ A=\left({A_{11}\atop A_{21}}\;{A_{12}\atop A_{22}}\right) @f$, its
+     * lower triangle is read and written. In blocks, with those in front, its
      * first columns become Cholesky's factor of $A_{11}=LL^T$ and
      * $A_{21}L^{-T}$, and $A_{22}$ the Schur complement
      * $A_{22}-A_{21}A_{11}^{-1}A_{12}$.
