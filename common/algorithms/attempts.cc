@@ -188,6 +188,7 @@ namespace Friction
         else if (report.converged && others_have_failed)
           solver.next_method = Method::contact_nodes;
       }
+    try_what_knows_the_law();
   }
 
 
@@ -340,7 +341,6 @@ namespace Friction
         solver.newton_is_for_contact_nodes_alone(search))
       try_newton();
     try_contact_nodes_alone();
-    try_what_knows_the_law();
     try_what_has_solved_the_mesh_before();
 
     // Whether there is something else to try soon.
@@ -369,14 +369,10 @@ namespace Friction
     if (may_aggregate)
       {
         try_contact_nodes_alone();
-        try_what_knows_the_law();
         try_aggregates();
       }
     if (!outer_failure)
-      {
-        try_contact_nodes_alone();
-        try_what_knows_the_law();
-      }
+      try_contact_nodes_alone();
     // It has not had much time.
     if (!report.converged && may_aggregate && solver.budget->begin_attempt())
       try_algorithm(patience);
