@@ -298,9 +298,8 @@ namespace Friction
     const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
     while (!has_given_up() && !condensation)
       {
-        condensation =
-          std::make_unique<Condensation<dim>>(*matrix, *tree, is_held);
-        if (true_on_any_process(!condensation->factorize(),
+        condensation = std::make_unique<Condensation<dim>>(*tree, is_held);
+        if (true_on_any_process(!condensation->factorize(*matrix),
                                 problem.communicator()))
           {
             has_failed = !zone->grow_to_all();

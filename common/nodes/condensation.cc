@@ -21,11 +21,9 @@ namespace Friction
 
 
   template <int dim>
-  Condensation<dim>::Condensation(const NodeBlockMatrix<dim> &matrix,
-                                  const EliminationTree      &tree,
-                                  const std::vector<char>    &is_held)
-    : matrix(matrix)
-    , tree(tree)
+  Condensation<dim>::Condensation(const EliminationTree   &tree,
+                                  const std::vector<char> &is_held)
+    : tree(tree)
     , is_held(is_held)
     , factors(std::make_unique<Factors>())
   {}
@@ -39,7 +37,7 @@ namespace Friction
 
   template <int dim>
   bool
-  Condensation<dim>::factorize()
+  Condensation<dim>::factorize(const NodeBlockMatrix<dim> &matrix)
   {
     const auto                  &fronts = tree.fronts();
     std::vector<Eigen::MatrixXd> borders(fronts.size());

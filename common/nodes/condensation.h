@@ -31,20 +31,21 @@ namespace Friction
   public:
     /**
      * References are kept.
-     * @param matrix     symmetric; positive definite on what is eliminated.
      * @param tree       of the pattern of the matrix.
      * @param is_held    of each degree of freedom: its rows and columns are
      *                   left out, and so is its value.
      */
-    Condensation(const NodeBlockMatrix<dim> &matrix,
-                 const EliminationTree      &tree,
-                 const std::vector<char>    &is_held);
+    Condensation(const EliminationTree &tree, const std::vector<char> &is_held);
 
     ~Condensation();
 
-    /** Returns whether the matrix is positive definite on what is eliminated,
-     * up to rounding; if not, nothing else may be asked. */
-    bool factorize();
+    /**
+     * May be called again, with a matrix of the same pattern.
+     * @param matrix  symmetric.
+     * @return whether it is positive definite on what is eliminated, up to
+     *         rounding; if not, nothing else may be asked.
+     */
+    bool factorize(const NodeBlockMatrix<dim> &matrix);
 
     /** The block of S that couples the kept nodes i and j, column by column;
      * kept nodes are numbered as in the last front of the tree. */
@@ -72,10 +73,9 @@ namespace Friction
     // Matrices are Eigen's, which not everybody needs to know.
     struct Factors;
 
-    const NodeBlockMatrix<dim> &matrix;
-    const EliminationTree      &tree;
-    const std::vector<char>    &is_held;
-    std::unique_ptr<Factors>    factors;
+    const EliminationTree   &tree;
+    const std::vector<char> &is_held;
+    std::unique_ptr<Factors> factors;
   };
 } // namespace Friction
 

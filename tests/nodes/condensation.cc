@@ -111,8 +111,8 @@ namespace test_condensation
     const EliminationTree tree(
       A.sparsity(), body.positions, body.is_kept, body.is_absent);
     check_order(tree, body.is_absent);
-    Condensation<dim> condensation(A, tree, body.is_held);
-    check(condensation.factorize(), "  the matrix can be factorised");
+    Condensation<dim> condensation(tree, body.is_held);
+    check(condensation.factorize(A), "  the matrix can be factorised");
 
     // The same with all unknowns at once.
     const std::vector<unsigned int> &kept = tree.fronts().back().nodes;
@@ -213,7 +213,7 @@ namespace test_condensation
     const Body<dim>       free(problem, true);
     const EliminationTree no_contact(
       A.sparsity(), free.positions, free.is_kept, free.is_absent);
-    check(!Condensation<dim>(A, no_contact, free.is_held).factorize(),
+    check(!Condensation<dim>(no_contact, free.is_held).factorize(A),
           "  a body that nothing holds is noticed");
   }
 
@@ -242,7 +242,7 @@ namespace test_condensation
         for (const Point<2> &point : node_points<2>(d))
           positions.push_back({{point[0], point[1], 0.}});
         const EliminationTree tree(A.sparsity(), positions, no_node, no_node);
-        n_factorised += Condensation<2>(A, tree, no_value).factorize();
+        n_factorised += Condensation<2>(tree, no_value).factorize(A);
       }
     check(n_factorised == 0, "thin bodies that nothing holds are noticed");
   }
