@@ -155,7 +155,8 @@ namespace Friction
 
 
 
-  // In two dimensions relaxation of lines is all that stretched cells need.
+  // In two dimensions relaxation of lines is all that stretched cells need, and
+  // where there are planes these are.
   template <int dim>
   bool
   SafeguardedSolver<dim>::mostly_lines_in_space() const

@@ -6,10 +6,10 @@ namespace Friction
   namespace
   {
     // When a level is visited twice in a V-cycle: from a share of nodes in
-    // lines on the next finer level, and from a ratio of unknowns on; and on
-    // how many levels at most, since that many times double the visits of the
-    // coarsest.
-    constexpr double       mostly_lines = .5;
+    // lines or planes on the next finer level, and from a ratio of unknowns on;
+    // and on how many levels at most, since that many times double the visits
+    // of the coarsest.
+    constexpr double       mostly_together = .5;
     constexpr unsigned int coarsening = 3, most_doubled = 4;
   } // namespace
 
@@ -20,9 +20,9 @@ namespace Friction
     Levels<dim>       &levels,
     const Cycle        cycle,
     const unsigned int smoothing_steps,
-    const bool         by_lines)
+    const bool         relaxes_together)
     : levels(levels)
-    , by_lines(by_lines)
+    , relaxes_together(relaxes_together)
     , cycle(cycle)
     , smoothing_steps(smoothing_steps)
   {}
@@ -34,15 +34,16 @@ namespace Friction
   TruncatedCorrection<dim>::set_up()
   {
     const unsigned int n = levels.n_correction_levels();
-    relaxes_leaf         = by_lines && levels.hierarchy().n_levels() > 1 &&
-      levels.share_in_lines(n) > 0;
+    relaxes_leaf = relaxes_together && levels.hierarchy().n_levels() > 1 &&
+      levels.share_relaxed_together(n) > 0;
     // The coarsest level is solved, so that once is enough.
     n_visits.assign(n, 1);
     unsigned int n_doubled = 0;
     for (unsigned int k = n; k-- > 1;)
       if (cycle == Cycle::W)
         n_visits[k] = 2;
-      else if (by_lines && levels.share_in_lines(k + 1) >= mostly_lines &&
+      else if (relaxes_together &&
+               levels.share_relaxed_together(k + 1) >= mostly_together &&
                coarsening * levels.n_dofs(k) <= levels.n_dofs(k + 1) &&
                n_doubled < most_doubled)
         {

@@ -26,14 +26,14 @@ namespace Friction
    * others, and its edge matrices are those of local smoothing without
    * truncation.
    *
-   * Where cells are stretched, lines of strongly coupled nodes have to be
-   * relaxed together, see LineRelaxation. The leading relaxation goes node by
-   * node. So this correction relaxes the lines of the leaf mesh, before and
-   * after everything else, with half as many sweeps, and Levels::relax() those
-   * of the levels. Coarse
-   * levels are worth more then: a level that has at most a third of the nodes
-   * of the next finer one, of which half or more are in lines, is visited twice
-   * also in a V-cycle, on four levels at most.
+   * Where cells are stretched, lines or planes of strongly coupled nodes have
+   * to be relaxed together, see StretchedRelaxation. The leading relaxation
+   * goes node by node. So this correction relaxes those of the leaf mesh,
+   * before and after everything else, lines with half as many sweeps, and
+   * Levels::relax() those of the levels. Coarse levels are worth more then: a
+   * level that has at most a third of the nodes of the next finer one, of which
+   * half or more are in lines or planes, is visited twice also in a V-cycle, on
+   * four levels at most.
    */
   template <int dim>
   class TruncatedCorrection : public Correction<dim>
@@ -54,11 +54,11 @@ namespace Friction
     std::size_t memory_consumption() const override;
 
   protected:
-    /** @p by_lines: relaxes lines where there are some. */
+    /** @p relaxes_together: relaxes lines or planes where there are some. */
     TruncatedCorrection(Levels<dim>       &levels,
                         const Cycle        cycle,
                         const unsigned int smoothing_steps,
-                        const bool         by_lines);
+                        const bool         relaxes_together);
 
     Levels<dim> &levels;
 
@@ -92,7 +92,7 @@ namespace Friction
     std::vector<unsigned int> n_visits;
     std::vector<char>         is_untouched;
 
-    const bool  by_lines;
+    const bool  relaxes_together;
     const Cycle cycle;
     bool        relaxes_leaf = false;
 

@@ -1,3 +1,4 @@
+#include <common/levels/aggregate_levels.h>
 #include <common/levels/levels.h>
 
 #include <utility>
@@ -15,6 +16,53 @@ namespace Friction
         if (!constraints.is_fixed(i))
           append(nodes, i);
       return nodes;
+    }
+
+
+
+    template <int dim>
+    std::array<double, 3>
+    coordinates_of(const Point<dim> &point)
+    {
+      std::array<double, 3> result = {{0., 0., 0.}};
+      for (unsigned int d = 0; d < dim; ++d)
+        result[d] = point[d];
+      return result;
+    }
+
+
+
+    template <int dim>
+    std::vector<std::array<double, 3>>
+    leaf_positions(const DoFHandler<dim>      &dof_handler,
+                   const DiscreteProblem<dim> &problem)
+    {
+      std::vector<std::array<double, 3>> result;
+      for (const Point<dim> &point :
+           node_positions(dof_handler, problem.constraints))
+        result.push_back(coordinates_of(point));
+      return result;
+    }
+
+
+
+    // Of the owned nodes of level k.
+    template <int dim>
+    std::vector<std::array<double, 3>>
+    level_positions(const DoFHandler<dim>  &dof_handler,
+                    const NodeDistribution &owned,
+                    const unsigned int      k)
+    {
+      std::vector<std::array<double, 3>> result(owned.n_owned());
+      for (const auto &cell : dof_handler.mg_cell_iterators_on_level(k))
+        if (cell->is_locally_owned_on_level())
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              const GlobalNode node = cell->mg_vertex_dof_index(k, v, 0) / dim;
+              if (owned.is_owned(node))
+                result[owned.local(node)] = coordinates_of(cell->vertex(v));
+            }
+      return result;
     }
   } // namespace
 
@@ -56,31 +104,41 @@ namespace Friction
     , transfer(dof_handler, hierarchy, problem.constraints)
     , matrices(problem.stiffness.blocks(), hierarchy, problem.constraints)
     , coarsest(hierarchy, matrices, coarsest_method)
-    , leaf_lines(
-        problem.stiffness.blocks(),
-        movable_nodes(problem.constraints),
-        [&problem](const unsigned int node, const unsigned int c) {
-          return problem.constraints.is_prescribed(node, c);
-        },
-        problem.communicator())
     , factorised(matrices.n_levels() + 1, 0)
   {
     for (unsigned int k = 0; k < matrices.n_levels(); ++k)
       {
-        const auto &level = hierarchy.level(k);
-        lines.emplace_back(
-          matrices.matrix(k),
-          level.relaxed_nodes(),
-          [&level](const unsigned int node, const unsigned int c) {
-            return level.is_prescribed(node, c);
-          },
-          problem.communicator());
-        relaxations.emplace_back(
-          matrices.matrix(k),
-          matrices.inverse_diagonals(k),
-          lines.back().other_nodes(level.relaxed_nodes()));
+        const auto  &level = hierarchy.level(k);
+        RelaxedNodes nodes;
+        nodes.nodes   = level.relaxed_nodes();
+        nodes.is_held = [&level](const unsigned int node,
+                                 const unsigned int c) {
+          return level.is_prescribed(node, c);
+        };
+        nodes.positions = [&dof_handler, &level, k]() {
+          return level_positions(
+            dof_handler, level.numbering().distribution(), k);
+        };
+        stretched.emplace_back(
+          matrices.matrix(k), nodes, problem.communicator());
+        relaxations.emplace_back(matrices.matrix(k),
+                                 matrices.inverse_diagonals(k),
+                                 stretched.back().other_nodes(nodes.nodes));
         coupled.emplace_back(level.numbering(), level.coupled_ghosts());
       }
+
+    RelaxedNodes nodes;
+    nodes.nodes   = movable_nodes(problem.constraints);
+    nodes.is_held = [&problem](const unsigned int node, const unsigned int c) {
+      return problem.constraints.is_prescribed(node, c);
+    };
+    for (const ContactNode<dim> &p : problem.contact)
+      nodes.truncated.push_back(p.node);
+    nodes.positions = [&dof_handler, &problem]() {
+      return leaf_positions(dof_handler, problem);
+    };
+    stretched.emplace_back(
+      problem.stiffness.blocks(), nodes, problem.communicator());
   }
 
 
@@ -92,7 +150,7 @@ namespace Friction
     Parts           &its = parts();
     const PhaseScope phase(problem.communicator(), SolverPhase::matrix_updates);
     const std::size_t n_rows = its.matrices.update(truncation);
-    // Rows of other processes have no part in the lines of this one.
+    // Rows of other processes have no part in lines and planes of this one.
     if (n_rows > 0)
       ++its.version;
     updated_rows += n_rows;
@@ -118,20 +176,20 @@ namespace Friction
                      VectorType        *defect)
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::coarse_sweeps);
-    double *const    result     = defect != nullptr ? defect->begin() : nullptr;
-    Parts           &its        = parts();
-    LineRelaxation<dim> &lines  = its.lines[k];
-    GhostExchange       &ghosts = its.coupled[k];
-    const bool           has_lines = lines.has_lines();
-    if (has_lines && its.needs_factorisation(k))
-      lines.factorise();
-    if (has_lines && sweeps.backwards)
-      lines.run(sweeps, b.begin(), c.begin(), ghosts);
-    const bool is_last = !has_lines || sweeps.backwards;
+    double *const    result = defect != nullptr ? defect->begin() : nullptr;
+    Parts           &its    = parts();
+    StretchedRelaxation<dim> &stretched = its.stretched[k];
+    GhostExchange            &ghosts    = its.coupled[k];
+    const bool                there_are = stretched.share() > 0.;
+    if (there_are && its.needs_factorisation(k))
+      stretched.factorise();
+    if (there_are && sweeps.backwards)
+      stretched.run(sweeps, b.begin(), c.begin(), ghosts);
+    const bool is_last = !there_are || sweeps.backwards;
     its.relaxations[k].run(
       sweeps, b.begin(), c.begin(), ghosts, is_last ? result : nullptr);
     if (!is_last)
-      lines.run(sweeps, b.begin(), c.begin(), ghosts, result);
+      stretched.run(sweeps, b.begin(), c.begin(), ghosts, result);
   }
 
 
@@ -144,16 +202,17 @@ namespace Friction
                           VectorType       *defect)
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::coarse_sweeps);
-    Parts           &its              = parts();
-    const Truncation<dim> &truncation = its.matrices.current_truncation();
+    Parts           &its                 = parts();
+    StretchedRelaxation<dim> &stretched  = its.stretched.back();
+    const Truncation<dim>    &truncation = its.matrices.current_truncation();
     if (its.needs_factorisation(n_correction_levels()))
-      its.leaf_lines.factorise(&truncation);
+      stretched.factorise(&truncation);
     problem.stiffness.update_ghosts(v);
-    its.leaf_lines.run(sweeps,
-                       r.begin(),
-                       v.begin(),
-                       problem.stiffness.ghosts(),
-                       defect != nullptr ? defect->begin() : nullptr);
+    stretched.run(sweeps,
+                  r.begin(),
+                  v.begin(),
+                  problem.stiffness.ghosts(),
+                  defect != nullptr ? defect->begin() : nullptr);
     // The problem of a long line is so badly conditioned that its rounding
     // would leave what is truncated.
     truncation.apply(v.begin());
@@ -168,10 +227,8 @@ namespace Friction
     if (!made)
       return 0;
     std::size_t bytes = made->hierarchy.memory_consumption() +
-      made->matrices.memory_consumption() +
-      made->transfer.memory_consumption() +
-      made->leaf_lines.memory_consumption();
-    for (const LineRelaxation<dim> &of_level : made->lines)
+      made->matrices.memory_consumption() + made->transfer.memory_consumption();
+    for (const StretchedRelaxation<dim> &of_level : made->stretched)
       bytes += of_level.memory_consumption();
     return bytes;
   }

@@ -7,10 +7,11 @@
 #include <common/levels/level_matrices.h>
 #include <common/levels/level_transfer.h>
 #include <common/nodes/gauss_seidel.h>
-#include <common/nodes/line_relaxation.h>
+#include <common/nodes/stretched_relaxation.h>
 #include <common/parallel/ghost_exchange.h>
 #include <common/parallel/run_clock.h>
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -25,7 +26,7 @@ namespace Friction
    * - LevelTransfer: residuals down, corrections up;
    * - LevelMatrices: the Galerkin matrices, which follow the truncation;
    * - relaxation, and the solver of the coarsest level;
-   * - lines of strongly coupled nodes, if there are any.
+   * - lines or planes of strongly coupled nodes, if there are any.
    *
    * A correction adds vectors to this, and the order in which levels are
    * visited.
@@ -127,9 +128,9 @@ namespace Friction
 
     /**
      * Gauss-Seidel sweeps for B_k c = b at the nodes of a level that are to be
-     * relaxed: first at those that belong to no line, then over the lines, if
-     * there are any; backwards the other way round. The ghosts of @p c must be
-     * valid, and are on return.
+     * relaxed: first at those that belong to no line or plane, then over these,
+     * if there are any; backwards the other way round. The ghosts of @p c must
+     * be valid, and are on return.
      * @param defect  if not null, b - B_k c on return.
      */
     void relax(const unsigned int k,
@@ -138,16 +139,22 @@ namespace Friction
                const Sweeps      &sweeps,
                VectorType        *defect = nullptr);
 
-    /** The share of nodes in lines of strong couplings, which are there where
-     * cells are stretched, on a correction level, or with n_correction_levels()
-     * in place of a level on the leaf mesh. relax() knows of the lines of its
-     * level; on the leaf mesh, where the leading relaxation goes node by node,
-     * a correction has to. */
+    /** The share of nodes in lines or planes of strong couplings, which are
+     * there where cells are stretched, on a correction level, or with
+     * n_correction_levels() in place of a level on the leaf mesh. relax() knows
+     * of those of its level; on the leaf mesh, where the leading relaxation
+     * goes node by node, a correction has to. */
+    double
+    share_relaxed_together(const unsigned int k) const
+    {
+      return stretched(k).share();
+    }
+
+    /** The same, in lines only. */
     double
     share_in_lines(const unsigned int k) const
     {
-      return k < n_correction_levels() ? parts().lines[k].share_of_nodes()
-                                       : parts().leaf_lines.share_of_nodes();
+      return stretched(k).share_in_lines();
     }
 
     /** The number of unknowns of a correction level, or likewise of the leaf
@@ -161,7 +168,7 @@ namespace Friction
     }
 
     /**
-     * Sweeps over the lines of the leaf mesh for $T(A+\omega'')T\,v=r$.
+     * Sweeps over lines or planes of the leaf mesh for $T(A+\omega'')T\,v=r$.
      * @param v       truncated. Its ghosts need not be valid.
      * @param r       truncated.
      * @param defect  if not null, the truncated residual on return.
@@ -187,13 +194,12 @@ namespace Friction
       CoarsestSolver<dim>           coarsest;
       std::vector<GaussSeidel<dim>> relaxations;
 
-      // Where cells are stretched: the lines of the levels and of the leaf
-      // mesh. They are factorised when they are needed, and then kept until
-      // rows of the level matrices change.
-      std::vector<LineRelaxation<dim>> lines;
-      LineRelaxation<dim>              leaf_lines;
-      unsigned int                     version = 1; // of the matrices
-      std::vector<unsigned int>        factorised;  // which; none if zero
+      // Where cells are stretched: the lines or planes of the levels, and then
+      // those of the leaf mesh. They are factorised when they are needed, and
+      // then kept until rows of the level matrices change.
+      std::vector<StretchedRelaxation<dim>> stretched;
+      unsigned int                          version = 1; // of the matrices
+      std::vector<unsigned int>             factorised;  // which; none if zero
 
       bool needs_factorisation(const unsigned int k);
 
@@ -212,6 +218,12 @@ namespace Friction
       if (!made)
         make_now();
       return *made;
+    }
+
+    const StretchedRelaxation<dim> &
+    stretched(const unsigned int k) const
+    {
+      return parts().stretched[std::min(k, n_correction_levels())];
     }
   };
 } // namespace Friction

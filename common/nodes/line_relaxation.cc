@@ -1,6 +1,6 @@
 #include <common/nodes/interface_damping.h>
 #include <common/nodes/line_relaxation.h>
-#include <common/parallel/reductions.h>
+#include <common/nodes/relaxed_together.h>
 
 #include <deal.II/base/types.h>
 
@@ -22,12 +22,6 @@ namespace Friction
     constexpr double anisotropy = .65;
 
     constexpr unsigned int shortest_line = 3;
-
-    // The share of nodes that has to be in lines, or there are none. To see
-    // that there are none it is enough to look at every seventh node where
-    // there are many.
-    constexpr double       fewest = .02;
-    constexpr unsigned int sample = 7, many = 10000;
 
     // The strong partners of a node, at most two; the others are none.
     using Partners = std::array<unsigned int, 2>;
@@ -93,37 +87,23 @@ namespace Friction
                                       const MPI_Comm              communicator)
     : A(&A)
   {
-    std::vector<char> is_relaxed(A.n_rows());
-    double            n_relaxed = 0;
-    for (const RowRange &range : relaxed_nodes)
-      {
-        std::fill(is_relaxed.begin() + range.first,
-                  is_relaxed.begin() + range.second,
-                  true);
-        n_relaxed += range.second - range.first;
-      }
-
-    // Where cells are not stretched, this is all that is paid.
-    const unsigned int    step    = A.n_rows() > many ? sample : 1;
-    std::array<double, 2> sampled = {{0, 0}}; // all, and stretched ones
-    for (const RowRange &range : relaxed_nodes)
-      for (unsigned int i = range.first; i < range.second; ++i)
-        if (i % step == 0)
-          {
-            const Partners partners = strong_partners(A, i, is_relaxed);
-            // Each stands for as many as its process passes over.
-            sampled[0] += step;
-            if (partners[0] != none || partners[1] != none)
-              sampled[1] += step;
-          }
-    sampled = sum_over_processes(sampled, communicator);
-    if (sampled[1] <= fewest * sampled[0])
+    const std::vector<char> is_relaxed =
+      RelaxedTogether::flags(A.n_rows(), relaxed_nodes);
+    const auto has_partners = [&](const unsigned int i) {
+      const Partners partners = strong_partners(A, i, is_relaxed);
+      return partners[0] != none || partners[1] != none;
+    };
+    if (!RelaxedTogether::are_there(
+          A.n_rows(), relaxed_nodes, has_partners, communicator))
       return;
 
     find_lines(is_relaxed);
     const std::array<double, 2> found = sum_over_processes(
-      std::array<double, 2>{{n_relaxed, double(nodes.size())}}, communicator);
-    if (found[1] <= fewest * found[0])
+      std::array<double, 2>{
+        {double(std::count(is_relaxed.begin(), is_relaxed.end(), true)),
+         double(nodes.size())}},
+      communicator);
+    if (found[1] <= RelaxedTogether::fewest * found[0])
       {
         starts = {0};
         nodes  = {};
@@ -230,12 +210,7 @@ namespace Friction
     std::vector<char> is_in_line(A->n_rows());
     for (const unsigned int i : nodes)
       is_in_line[i] = true;
-    NodeRanges others;
-    for (const RowRange &range : all)
-      for (unsigned int i = range.first; i < range.second; ++i)
-        if (!is_in_line[i])
-          append(others, i);
-    return others;
+    return RelaxedTogether::others(all, is_in_line);
   }
 
 
@@ -303,28 +278,6 @@ namespace Friction
 
 
   template <int dim>
-  NodeValue<dim>
-  LineRelaxation<dim>::residual_of(const unsigned int node,
-                                   const double      *b,
-                                   const double      *x) const
-  {
-    NodeValue<dim> r = A->row_times(node, x);
-    for (unsigned int d = 0; d < dim; ++d)
-      r[d] = b[dim * node + d] - r[d];
-    if (truncation != nullptr && !truncation->is_identity(node))
-      {
-        const NodeValue<dim> curved =
-          times<dim>(truncation->curvature(node).data(), x + dim * node);
-        for (unsigned int d = 0; d < dim; ++d)
-          r[d] -= curved[d];
-        r = times<dim>(truncation->projector(node).data(), r.data());
-      }
-    return r;
-  }
-
-
-
-  template <int dim>
   void
   LineRelaxation<dim>::relax_line(const unsigned int line,
                                   const double      *b,
@@ -335,7 +288,7 @@ namespace Friction
     for (unsigned int k = begin; k < end; ++k)
       {
         NodeValue<dim> &y = values[k - begin];
-        y                 = residual_of(nodes[k], b, x);
+        y = RelaxedTogether::residual<dim>(*A, truncation, nodes[k], b, x);
         if (k > begin)
           {
             const NodeValue<dim> taken =
@@ -385,7 +338,8 @@ namespace Friction
     if (residual != nullptr)
       for (unsigned int i = 0; i < A->n_rows(); ++i)
         {
-          const NodeValue<dim> r = residual_of(i, b, x);
+          const NodeValue<dim> r =
+            RelaxedTogether::residual<dim>(*A, truncation, i, b, x);
           std::copy(r.begin(), r.end(), residual + dim * i);
         }
   }

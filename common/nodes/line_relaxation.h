@@ -125,10 +125,6 @@ namespace Friction
 
     void find_lines(const std::vector<char> &is_relaxed);
 
-    NodeValue<dim> residual_of(const unsigned int node,
-                               const double      *b,
-                               const double      *x) const;
-
     void relax_line(const unsigned int line, const double *b, double *x) const;
   };
 } // namespace Friction

@@ -1,7 +1,8 @@
 // Cells that are much longer than wide: a frictional block takes about as many
 // cycles as with squares, whichever way the cells lie, on all meshes. Without
-// relaxation by lines it is around a hundred for an aspect ratio of ten.
-// With several processes, lines are cut, and it takes more of them.
+// relaxation by lines, and in three dimensions by planes, it is around a
+// hundred for an aspect ratio of ten. With several processes, these are cut,
+// and it takes more cycles.
 
 #include <common/algorithms/nested_iteration.h>
 
@@ -61,4 +62,6 @@ TEST(stretched_cells)
     }
   test<3>("1, 1, 10", 0, 2, alone ? 9 : 24);
   test<3>("10, 1, 1", 0, 2, alone ? 18 : 30);
+  test<3>("1, 10, 10", 0, 1, alone ? 9 : 36);
+  test<3>("8, 8, 1", 0, 1, alone ? 18 : 54);
 }

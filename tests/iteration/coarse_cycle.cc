@@ -9,7 +9,7 @@
 // left to the relaxation of the leaf mesh. Together with one such sweep before
 // and one after, all eigenvalues are positive, and the smallest one bounds the
 // contraction from below. All of this holds on stretched cells, too, where
-// lines are relaxed on levels and leaf mesh.
+// lines, or planes, are relaxed on levels and leaf mesh.
 //
 // With two levels only, the cycle is but the direct solution on the coarser
 // one. Then it is a projection, whose eigenvalues are zero and one and nothing
@@ -181,19 +181,38 @@ namespace test_coarse_cycle
 
 
 
+  // Flat cells are in lines, and long ones, in three dimensions, in planes.
+  enum class Cells
+  {
+    cubes,
+    flat,
+    elongated
+  };
+
   // Cells that are ten times as long as wide, and on the left a roller, so that
-  // the lines there have components that are prescribed.
+  // the lines or the plane there have components that are prescribed.
   template <int dim>
   Parameters
-  stretched_parameters()
+  cell_parameters(const Cells cells)
   {
-    Parameters p            = block_parameters<dim>(FrictionLaw::coulomb, .4);
-    p.scene.size            = std::vector<double>(dim, 1.);
-    p.scene.distortion      = 0.;
-    p.scene.subdivisions    = std::vector<unsigned int>(dim, 1);
-    p.scene.size[dim - 1]   = .2;
-    p.scene.subdivisions[0] = (dim == 2 ? 3 : 1);
-    p.scene.subdivisions[dim - 1] = (dim == 2 ? 6 : 4);
+    Parameters p = block_parameters<dim>(FrictionLaw::coulomb, .4);
+    if (cells == Cells::cubes)
+      return p;
+    p.scene.size          = std::vector<double>(dim, 1.);
+    p.scene.distortion    = 0.;
+    p.scene.subdivisions  = std::vector<unsigned int>(dim, 1);
+    p.scene.size[dim - 1] = .2;
+    if (cells == Cells::flat)
+      {
+        p.scene.subdivisions[0]       = (dim == 2 ? 3 : 1);
+        p.scene.subdivisions[dim - 1] = (dim == 2 ? 6 : 4);
+      }
+    else
+      {
+        p.scene.size[1]               = .2;
+        p.scene.subdivisions[1]       = 2;
+        p.scene.subdivisions[dim - 1] = 2;
+      }
     std::vector<std::string> roller(dim, "free");
     roller[0] = "0";
     p.boundary_conditions.displacement.push_back({"0", roller});
@@ -204,22 +223,24 @@ namespace test_coarse_cycle
 
   template <int dim>
   void
-  test_linear(const unsigned int seed, const bool is_stretched)
+  test_linear(const unsigned int seed, const Cells cells)
   {
+    const bool               is_stretched = cells != Cells::cubes;
     Random                   random(seed);
-    const RandomProblem<dim> problem(
-      is_stretched ? stretched_parameters<dim>()
-                   : block_parameters<dim>(FrictionLaw::coulomb, .4),
-      dim == 2 ? (is_stretched ? 2 : 4) : 2,
-      dim == 2 ? .45 : .5,
-      random);
+    const RandomProblem<dim> problem(cell_parameters<dim>(cells),
+                                     dim == 2 ? (is_stretched ? 2 : 4) : 2,
+                                     dim == 2 ? .45 : .5,
+                                     random);
     for (const std::string kind :
          {"none", "random at contact", "all stick", "large patches"})
       {
         const Truncation<dim> truncation =
           make_truncation<dim>(problem, kind, random);
         const Setup<dim> setup(problem, truncation);
-        std::cout << dim << "D, " << (is_stretched ? "stretched, " : "")
+        std::cout << dim << "D, "
+                  << (cells == Cells::flat          ? "stretched, "
+                        : cells == Cells::elongated ? "long cells, "
+                                                    : "")
                   << "truncation: " << kind << "; "
                   << problem.constraints().n_nodes() << " nodes, "
                   << problem.hierarchy().n_levels() << " levels, "
@@ -254,15 +275,22 @@ namespace test_coarse_cycle
             levels.update(truncation);
             if (type == Cycle::V)
               {
-                bool               has_lines = true, leaf_has = false;
-                const unsigned int n = levels.n_correction_levels();
-                for (unsigned int k = 1; k < n; ++k)
-                  has_lines = has_lines && levels.share_in_lines(k) > 0;
-                leaf_has = levels.share_in_lines(n) > 0;
-                check(n > 1 && has_lines == is_stretched &&
-                        leaf_has == is_stretched,
-                      is_stretched ? "levels and leaf mesh have lines"
-                                   : "there are no lines");
+                const unsigned int n            = levels.n_correction_levels();
+                unsigned int       n_with_lines = 0, n_with_planes = 0;
+                for (unsigned int k = 1; k <= n; ++k)
+                  {
+                    const double share = levels.share_in_lines(k);
+                    n_with_lines += share > 0;
+                    n_with_planes += levels.share_relaxed_together(k) > share;
+                  }
+                check(n > 1 && n_with_lines == (cells == Cells::flat ? n : 0),
+                      cells == Cells::flat ? "levels and leaf mesh have lines"
+                                           : "there are no lines");
+                if (dim == 3)
+                  check(n_with_planes == (cells == Cells::elongated ? n : 0),
+                        cells == Cells::elongated
+                          ? "levels and leaf mesh have planes"
+                          : "there are no planes");
               }
             const Eigen::MatrixXd C =
               to_dense_operator(cycle, problem, setup.Z);
@@ -281,7 +309,7 @@ namespace test_coarse_cycle
                     spectrum.maxCoeff() < 1 + 1e-10,
                   which + "spectrum in [0,1]");
             const unsigned int n_coarse = (spectrum.array() > 1e-8).count();
-            // Lines of the leaf mesh are relaxed as well.
+            // Lines and planes of the leaf mesh are relaxed as well.
             check(n_coarse > 0 && (n_coarse < C.rows() || is_stretched),
                   which + "acts on the coarse functions");
 
@@ -297,7 +325,9 @@ namespace test_coarse_cycle
             check(contraction.minCoeff() > -1e-10,
                   which + "with leaf sweeps, error not overshot");
             check_below(contraction.maxCoeff(),
-                        is_stretched ? .93 : .8,
+                        cells == Cells::cubes    ? .8
+                          : cells == Cells::flat ? .93
+                                                 : .94,
                         which + "contraction with one leaf sweep each way");
             if (type == Cycle::V)
               contraction_of_V = contraction.maxCoeff();
@@ -502,11 +532,12 @@ namespace test_coarse_cycle
 
 TEST(coarse_cycle)
 {
-  for (const bool is_stretched : {false, true})
+  for (const Cells cells : {Cells::cubes, Cells::flat})
     {
-      test_linear<2>(1, is_stretched);
-      test_linear<3>(1, is_stretched);
+      test_linear<2>(1, cells);
+      test_linear<3>(1, cells);
     }
+  test_linear<3>(1, Cells::elongated);
   test_two_levels<2>(1);
   test_two_levels<3>(1);
   test_nothing_free<2>();

@@ -1,0 +1,103 @@
+#ifndef friction_nodes_relaxed_together_h
+#define friction_nodes_relaxed_together_h
+
+#include <common/nodes/node_block_matrix.h>
+#include <common/nodes/truncation.h>
+#include <common/parallel/reductions.h>
+
+#include <mpi.h>
+
+#include <array>
+#include <vector>
+
+namespace Friction
+{
+  /**
+   * What relaxation of several nodes at once, in lines or in planes, has to ask
+   * of a matrix and of its nodes.
+   */
+  namespace RelaxedTogether
+  {
+    /** The share of nodes that has to be relaxed together, or none are. */
+    constexpr double fewest = .02;
+
+    /** For each row of a matrix whether it is among @p nodes. */
+    inline std::vector<char>
+    flags(const unsigned int n_rows, const NodeRanges &nodes)
+    {
+      std::vector<char> is_among(n_rows);
+      for (const RowRange &range : nodes)
+        for (unsigned int i = range.first; i < range.second; ++i)
+          is_among[i] = true;
+      return is_among;
+    }
+
+    /** Those of @p all that are not among @p some. */
+    inline NodeRanges
+    others(const NodeRanges &all, const std::vector<char> &some)
+    {
+      NodeRanges result;
+      for (const RowRange &range : all)
+        for (unsigned int i = range.first; i < range.second; ++i)
+          if (!some[i])
+            append(result, i);
+      return result;
+    }
+
+    /**
+     * Whether more than the least share of @p nodes is stretched, which where
+     * there are many is seen from every seventh: where cells are not stretched,
+     * this is all that is paid. Collective.
+     */
+    template <typename IsStretched>
+    bool
+    are_there(const unsigned int n_rows,
+              const NodeRanges  &nodes,
+              const IsStretched &is_stretched,
+              const MPI_Comm     communicator)
+    {
+      constexpr unsigned int sample = 7, many = 10000;
+      const unsigned int     step = n_rows > many ? sample : 1;
+      // Each stands for as many as its process passes over.
+      std::array<double, 2> sampled = {{0, 0}};
+      for (const RowRange &range : nodes)
+        for (unsigned int i = range.first; i < range.second; ++i)
+          if (i % step == 0)
+            {
+              sampled[0] += step;
+              if (is_stretched(i))
+                sampled[1] += step;
+            }
+      sampled = sum_over_processes(sampled, communicator);
+      return sampled[1] > fewest * sampled[0];
+    }
+
+    /**
+     * The residual $T(b-(A+\omega'')x)$ of a row, with truncated b; without a
+     * truncation $b-Ax$.
+     */
+    template <int dim>
+    NodeValue<dim>
+    residual(const NodeBlockMatrix<dim> &A,
+             const Truncation<dim>      *truncation,
+             const unsigned int          node,
+             const double               *b,
+             const double               *x)
+    {
+      NodeValue<dim> r = A.row_times(node, x);
+      for (unsigned int d = 0; d < dim; ++d)
+        r[d] = b[dim * node + d] - r[d];
+      if (truncation != nullptr && !truncation->is_identity(node))
+        {
+          const NodeValue<dim> curved =
+            times<dim>(truncation->curvature(node).data(), x + dim * node);
+          for (unsigned int d = 0; d < dim; ++d)
+            r[d] -= curved[d];
+          r = times<dim>(truncation->projector(node).data(), r.data());
+        }
+      return r;
+    }
+  } // namespace RelaxedTogether
+} // namespace Friction
+
+#endif

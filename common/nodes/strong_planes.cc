@@ -1,0 +1,190 @@
+#include <common/dense_algebra.h>
+#include <common/nodes/strong_planes.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Friction
+{
+  namespace
+  {
+    // What a strong coupling has of the strongest one; and what all couplings
+    // in the plane of a node have of its diagonal together, or what strong ones
+    // have, by which nodes in planes are told quickly.
+    constexpr double least_strength = .35, share_of_diagonal = .85,
+                     strong_share = .75;
+
+    // Of squares of cosines, weighted by strengths: what may stand out of the
+    // plane of a node. And the largest sine of a coupling of the plane.
+    constexpr double largest_variance = .05, largest_sine = .35;
+
+    template <int dim>
+    double
+    strength(const NodeBlockMatrix<dim> &A, const std::size_t position)
+    {
+      return -trace<dim>(A.block(position));
+    }
+
+
+
+    // What a coupling of this row has to have in its opinion.
+    template <int dim>
+    double
+    weakest_of(const NodeBlockMatrix<dim> &A, const unsigned int row)
+    {
+      double strongest = 0.;
+      for (std::size_t e = A.row_begin(row) + 1; e < A.row_end(row); ++e)
+        strongest = std::max(strongest, strength(A, e));
+      return least_strength * strongest;
+    }
+
+
+
+    // Whether few couplings of a node are strong and have most of its diagonal.
+    template <int dim, typename IsStrong>
+    bool
+    has_few_strong(const NodeBlockMatrix<dim> &A,
+                   const unsigned int          row,
+                   const IsStrong             &is_strong)
+    {
+      if (A.row_begin(row) == A.row_end(row))
+        return false;
+      std::size_t n   = 0;
+      double      sum = 0.;
+      for (std::size_t e = A.row_begin(row) + 1; e < A.row_end(row); ++e)
+        if (is_strong(e))
+          {
+            ++n;
+            sum += strength(A, e);
+          }
+      return n > 0 && 2 * n < A.row_end(row) - A.row_begin(row) &&
+        sum >= strong_share * trace<dim>(A.block(A.row_begin(row)));
+    }
+
+
+
+    Eigen::Vector3d
+    unit_direction(const std::array<double, 3> &from,
+                   const std::array<double, 3> &to)
+    {
+      return Eigen::Vector3d(to[0] - from[0], to[1] - from[1], to[2] - from[2])
+        .normalized();
+    }
+
+
+
+    bool
+    is_flat(const Eigen::Vector3d &normal, const Eigen::Vector3d &direction)
+    {
+      return std::abs(direction.dot(normal)) <= largest_sine;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  bool
+  may_be_in_plane(const NodeBlockMatrix<dim> &A, const unsigned int row)
+  {
+    const double weakest = weakest_of(A, row);
+    return weakest > 0. && has_few_strong(A, row, [&](const std::size_t e) {
+             return strength(A, e) >= weakest;
+           });
+  }
+
+
+
+  template <int dim>
+  std::vector<std::vector<unsigned int>>
+  strong_planes(const NodeBlockMatrix<dim>               &A,
+                const std::vector<char>                  &is_relaxed,
+                const std::vector<std::array<double, 3>> &positions)
+  {
+    const unsigned int  n = A.n_rows();
+    std::vector<double> weakest(n);
+    for (unsigned int i = 0; i < n; ++i)
+      weakest[i] = weakest_of(A, i);
+    // Of couplings to nodes of other processes the row's opinion has to do.
+    const auto is_strong = [&](const unsigned int i, const std::size_t e) {
+      const unsigned int j = A.column(e);
+      return weakest[i] > 0. && strength(A, e) >= weakest[i] &&
+        (j >= n || strength(A, e) >= weakest[j]);
+    };
+
+    std::vector<char>            is_left(n, false);
+    std::vector<Eigen::Vector3d> normals(n);
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        const auto is_strong_here = [&](const std::size_t e) {
+          return is_strong(i, e);
+        };
+        if (!is_relaxed[i] || !has_few_strong(A, i, is_strong_here))
+          continue;
+        Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
+        for (std::size_t e = A.row_begin(i) + 1; e < A.row_end(i); ++e)
+          if (is_strong(i, e) && A.column(e) < n)
+            {
+              const Eigen::Vector3d d =
+                unit_direction(positions[i], positions[A.column(e)]);
+              moment += strength(A, e) * d * d.transpose();
+            }
+        const Eigenpairs axes = eigenpairs(moment);
+        if (axes.values[0] > largest_variance * moment.trace())
+          continue;
+        normals[i] = axes.vectors.col(0);
+
+        double in_plane = 0.;
+        for (std::size_t e = A.row_begin(i) + 1; e < A.row_end(i); ++e)
+          if (strength(A, e) > 0. &&
+              (A.column(e) >= n
+                 ? is_strong(i, e)
+                 : is_flat(
+                     normals[i],
+                     unit_direction(positions[i], positions[A.column(e)]))))
+            in_plane += strength(A, e);
+        is_left[i] =
+          in_plane >= share_of_diagonal * trace<dim>(A.block(A.row_begin(i)));
+      }
+
+    std::vector<std::vector<unsigned int>> planes;
+    for (unsigned int first = 0; first < n; ++first)
+      if (is_left[first])
+        {
+          std::vector<unsigned int> plane(1, first);
+          is_left[first] = false;
+          for (unsigned int k = 0; k < plane.size(); ++k)
+            {
+              const unsigned int i = plane[k];
+              for (std::size_t e = A.row_begin(i) + 1; e < A.row_end(i); ++e)
+                {
+                  const unsigned int j = A.column(e);
+                  if (j >= n || !is_left[j] || !is_strong(i, e))
+                    continue;
+                  const Eigen::Vector3d d =
+                    unit_direction(positions[i], positions[j]);
+                  if (is_flat(normals[i], d) && is_flat(normals[j], d))
+                    {
+                      is_left[j] = false;
+                      plane.push_back(j);
+                    }
+                }
+            }
+          std::sort(plane.begin(), plane.end());
+          planes.push_back(std::move(plane));
+        }
+    return planes;
+  }
+
+
+
+  template std::vector<std::vector<unsigned int>>
+  strong_planes(const NodeBlockMatrix<2> &,
+                const std::vector<char> &,
+                const std::vector<std::array<double, 3>> &);
+  template std::vector<std::vector<unsigned int>>
+                strong_planes(const NodeBlockMatrix<3> &,
+                              const std::vector<char> &,
+                              const std::vector<std::array<double, 3>> &);
+  template bool may_be_in_plane(const NodeBlockMatrix<2> &, const unsigned int);
+  template bool may_be_in_plane(const NodeBlockMatrix<3> &, const unsigned int);
+} // namespace Friction
