@@ -156,7 +156,7 @@ namespace Friction
 
 
   // In two dimensions relaxation of lines is all that stretched cells need, and
-  // where there are planes these are.
+  // planes are enough where cells are long, so that only lines count.
   template <int dim>
   bool
   SafeguardedSolver<dim>::mostly_lines_in_space() const

@@ -1,6 +1,7 @@
 #include <common/levels/aggregate_levels.h>
 #include <common/levels/levels.h>
 
+#include <array>
 #include <utility>
 
 namespace Friction

@@ -101,8 +101,10 @@ namespace Friction
         std::equal(
           values, values + dim * dim * matrix.n_blocks(), copy.block(0)))
       return;
-    if (keeps_copy)
-      copy = matrix;
+    copy = keeps_copy ? matrix : NodeBlockMatrix<dim>();
+    // What has been truncated was another matrix.
+    projectors.clear();
+    curvatures.clear();
     for (double shift = first_shift; !factors->factorize(matrix);
          shift *= next_shift)
       {

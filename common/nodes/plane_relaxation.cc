@@ -2,6 +2,8 @@
 #include <common/nodes/relaxed_together.h>
 #include <common/nodes/strong_planes.h>
 
+#include <deal.II/base/exceptions.h>
+
 #include <algorithm>
 
 namespace Friction
@@ -22,7 +24,9 @@ namespace Friction
     constexpr unsigned int fewest_couplings = 4;
 
     // Multiplications per unknown to factorise a plane: a cycle has some
-    // thousand, and planes of a million unknowns have a hundred thousand.
+    // thousand, and planes of a million unknowns have a hundred thousand. On
+    // the leaf mesh it is done once, and on levels, whose planes have a quarter
+    // of the nodes, whenever phases change.
     constexpr double dearest = 3e5;
   } // namespace
 

@@ -4,6 +4,8 @@
 #include <common/nodes/line_relaxation.h>
 #include <common/nodes/plane_relaxation.h>
 
+#include <deal.II/base/exceptions.h>
+
 #include <algorithm>
 
 namespace Friction
@@ -57,7 +59,7 @@ namespace Friction
     /** Sweeps over lines and then one sweep over planes, whatever their number
      * is, backwards the other way round: a plane costs several times as much,
      * and a second sweep saves less than it takes. Arguments as those of
-     * LineRelaxation::run(). */
+     * LineRelaxation::run(). There must be lines or planes. */
     void
     run(const Sweeps  &sweeps,
         const double  *b,
@@ -65,6 +67,7 @@ namespace Friction
         GhostExchange &ghosts,
         double        *residual = nullptr) const
     {
+      Assert(share() > 0., dealii::ExcInvalidState());
       const bool has_lines  = lines.has_lines(),
                  has_planes = planes.share_of_nodes() > 0.;
       const Sweeps once     = {std::min(1u, sweeps.number), sweeps.backwards};

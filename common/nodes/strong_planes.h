@@ -32,11 +32,11 @@ namespace Friction
    * of a material that is the same everywhere, strengths are those of Laplace's
    * operator. If w = 1, couplings along the plane have 0.85 of the diagonal
    * from r = 2.7 on. Those out of the plane have at most $(r^2+2)/(4r^2-1)$ of
-   * the strongest, a third then and a quarter in the end. With w = 2, from
-   * which on nodes are in lines, the diagonal ones have 0.36 and the plane
-   * still hangs together. A mean volumetric strain in place of pointwise ones
-   * changes these numbers: cells of a nearly incompressible material may have
-   * to be longer, or are in no plane at all.
+   * the strongest, a third then and a quarter in the end. From w = 1.8 on nodes
+   * are in lines; until w = 2 the diagonal couplings have 0.36 of the
+   * strongest, and the plane hangs together. A mean volumetric strain in place
+   * of pointwise ones changes these numbers: cells of a nearly incompressible
+   * material may have to be longer, or are in no plane at all.
    *
    * @param is_relaxed  of each row: others are in no plane.
    * @param positions   of the nodes of the rows; in two dimensions the third

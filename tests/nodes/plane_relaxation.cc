@@ -14,10 +14,17 @@
 // - a truncation that changes gives what it gives from the beginning, and so
 //   does a matrix that changes, in which a direction may have vanished at a
 //   node;
-// - components that are held keep their values, and the energy falls.
+// - components that are held keep their values, and the energy falls;
+// - where there are lines, too, both are relaxed, and all of this is true.
 
-#include <common/nodes/plane_relaxation.h>
+#include <common/nodes/relaxed_together.h>
+#include <common/nodes/stretched_relaxation.h>
 
+#include <deal.II/grid/grid_tools.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <iostream>
 #include <set>
 
@@ -353,6 +360,86 @@ namespace test_plane_relaxation
     check_everywhere(v.linfty_norm() < 1e-12 * w.linfty_norm(),
                      "a matrix that has changed is as good as a new one");
   }
+
+
+
+  // Long cells, of which those in the lower half are also flat: lines there,
+  // and planes above.
+  void
+  test_lines_and_planes()
+  {
+    const Scene<dim> scene(block(0, 4));
+    const auto       mesh = make_triangulation<dim>();
+    scene.make_coarse_mesh(*mesh);
+    mesh->refine_global(1);
+    GridTools::transform(
+      [](const Point<dim> &p) {
+        Point<dim> q = p;
+        q[dim - 1]   = p[dim - 1] < .5 ? .1 * p[dim - 1] : p[dim - 1] - .45;
+        return q;
+      },
+      *mesh);
+    Discretized<dim>            d(scene, *mesh);
+    const NodeBlockMatrix<dim> &A = d.stiffness().blocks();
+    StretchedRelaxation<dim>    both(A, nodes_of(d), MPI_COMM_WORLD);
+    check_everywhere(both.share_in_lines() > .1 &&
+                       both.share() > both.share_in_lines() + .1 &&
+                       both.share() <= 1.,
+                     "there are both");
+    unsigned int n_left = 0, n_all = 0;
+    for (const RowRange &range : both.other_nodes(movable_nodes(d)))
+      n_left += range.second - range.first;
+    for (const RowRange &range : movable_nodes(d))
+      n_all += range.second - range.first;
+    n_left = Utilities::MPI::sum(n_left, MPI_COMM_WORLD);
+    n_all  = Utilities::MPI::sum(n_all, MPI_COMM_WORLD);
+    check_everywhere(std::abs(1. - both.share() - double(n_left) / n_all) <
+                       1e-12,
+                     "their share is that of all but the other nodes");
+
+    Random                random(5);
+    const Truncation<dim> truncation = random_truncation(d, random);
+    both.factorise(&truncation);
+    const auto random_vector = [&]() {
+      VectorType v = d.vector();
+      for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
+        v.local_element(i) =
+          d.constraints().is_fixed(i / dim) ? 0. : random(-1., 1.);
+      truncation.apply(v.begin());
+      d.stiffness().update_ghosts(v);
+      return v;
+    };
+    const VectorType b = random_vector(), c = random_vector();
+    GhostExchange   &ghosts   = d.stiffness().ghosts();
+    bool             is_right = true;
+    for (const bool backwards : {false, true})
+      {
+        VectorType x = random_vector(), residual = d.vector();
+        residual = 7.;
+        both.run(
+          {2, backwards}, b.begin(), x.begin(), ghosts, residual.begin());
+        for (const RowRange &range : movable_nodes(d))
+          for (unsigned int i = range.first; i < range.second; ++i)
+            {
+              const NodeValue<dim> r = RelaxedTogether::residual<dim>(
+                A, &truncation, i, b.begin(), x.begin());
+              for (unsigned int k = 0; k < dim; ++k)
+                is_right = is_right &&
+                  std::abs(r[k] - residual.local_element(dim * i + k)) < 1e-11;
+            }
+      }
+    check_everywhere(is_right, "the residual is that after the last of them");
+    const auto forwards_and_backwards = [&](const VectorType &rhs) {
+      VectorType v = d.vector();
+      both.run({2, false}, rhs.begin(), v.begin(), ghosts);
+      both.run({2, true}, rhs.begin(), v.begin(), ghosts);
+      return v;
+    };
+    const double one   = c * forwards_and_backwards(b),
+                 other = b * forwards_and_backwards(c);
+    check_everywhere(std::abs(one - other) < 1e-10 * std::abs(one),
+                     "forwards and backwards is symmetric");
+  }
 } // namespace test_plane_relaxation
 
 
@@ -373,4 +460,6 @@ TEST(plane_relaxation)
   test(0, true);
   name("long in z");
   test(2, false);
+  name("lines and planes");
+  test_lines_and_planes();
 }
