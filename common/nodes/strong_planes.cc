@@ -1,6 +1,8 @@
 #include <common/dense_algebra.h>
 #include <common/nodes/strong_planes.h>
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 
@@ -73,6 +75,20 @@ namespace Friction
 
 
 
+    // Whether all eigenvalues of a symmetric matrix do: it is positive definite
+    // without that much on its diagonal. Most nodes that are in no plane are
+    // done with here, in no time.
+    bool
+    exceed(const Eigen::Matrix3d &matrix, const double bound)
+    {
+      const Eigen::Matrix3d rest = matrix - bound * Eigen::Matrix3d::Identity();
+      return rest(0, 0) > 0. &&
+        rest(0, 0) * rest(1, 1) > rest(0, 1) * rest(0, 1) &&
+        rest.determinant() > 0.;
+    }
+
+
+
     bool
     is_flat(const Eigen::Vector3d &normal, const Eigen::Vector3d &direction)
     {
@@ -128,10 +144,9 @@ namespace Friction
                 unit_direction(positions[i], positions[A.column(e)]);
               moment += strength(A, e) * d * d.transpose();
             }
-        const Eigenpairs axes = eigenpairs(moment);
-        if (axes.values[0] > largest_variance * moment.trace())
+        if (exceed(moment, largest_variance * moment.trace()))
           continue;
-        normals[i] = axes.vectors.col(0);
+        normals[i] = eigenpairs(moment).vectors.col(0);
 
         double in_plane = 0.;
         for (std::size_t e = A.row_begin(i) + 1; e < A.row_end(i); ++e)
