@@ -98,18 +98,13 @@ namespace Friction
       return;
 
     find_lines(is_relaxed);
-    const std::array<double, 2> found = sum_over_processes(
-      std::array<double, 2>{
-        {double(std::count(is_relaxed.begin(), is_relaxed.end(), true)),
-         double(nodes.size())}},
-      communicator);
-    if (found[1] <= RelaxedTogether::fewest * found[0])
+    share = RelaxedTogether::share_of(nodes.size(), is_relaxed, communicator);
+    if (!has_lines())
       {
         starts = {0};
         nodes  = {};
         return;
       }
-    share = found[1] / found[0];
     for (const unsigned int i : nodes)
       {
         cuts.push_back(1e-10 * trace<dim>(A.block(A.row_begin(i))));
@@ -336,12 +331,7 @@ namespace Friction
         ghosts.update(x, dim);
       }
     if (residual != nullptr)
-      for (unsigned int i = 0; i < A->n_rows(); ++i)
-        {
-          const NodeValue<dim> r =
-            RelaxedTogether::residual<dim>(*A, truncation, i, b, x);
-          std::copy(r.begin(), r.end(), residual + dim * i);
-        }
+      RelaxedTogether::residuals<dim>(*A, truncation, b, x, residual);
   }
 
 

@@ -50,18 +50,12 @@ namespace Friction
     const std::vector<char> is_relaxed =
       RelaxedTogether::flags(A.n_rows(), nodes.nodes);
     find_planes(nodes, is_relaxed);
-    double n_found = 0.;
+    std::size_t n_found = 0;
     for (const auto &problem : problems)
       n_found += problem->nodes().size();
-    const std::array<double, 2> found = sum_over_processes(
-      std::array<double, 2>{
-        {double(std::count(is_relaxed.begin(), is_relaxed.end(), true)),
-         n_found}},
-      communicator);
-    if (found[1] <= RelaxedTogether::fewest * found[0])
+    share = RelaxedTogether::share_of(n_found, is_relaxed, communicator);
+    if (share == 0.)
       problems.clear();
-    else
-      share = found[1] / found[0];
   }
 
 
@@ -177,9 +171,6 @@ namespace Friction
                             double        *residual) const
   {
     Assert(is_factorised || problems.empty(), ExcInvalidState());
-    const auto residual_of = [&](const unsigned int i) {
-      return RelaxedTogether::residual<dim>(*A, truncation, i, b, x);
-    };
     const unsigned int n = problems.size();
     for (unsigned int s = 0; s < sweeps.number; ++s)
       {
@@ -191,7 +182,8 @@ namespace Friction
             values.resize(dim * nodes.size());
             for (unsigned int i = 0; i < nodes.size(); ++i)
               {
-                const NodeValue<dim> r = residual_of(nodes[i]);
+                const NodeValue<dim> r = RelaxedTogether::residual<dim>(
+                  *A, truncation, nodes[i], b, x);
                 std::copy(r.begin(), r.end(), values.begin() + dim * i);
               }
             problem.solve(values);
@@ -202,11 +194,7 @@ namespace Friction
         ghosts.update(x, dim);
       }
     if (residual != nullptr)
-      for (unsigned int i = 0; i < A->n_rows(); ++i)
-        {
-          const NodeValue<dim> r = residual_of(i);
-          std::copy(r.begin(), r.end(), residual + dim * i);
-        }
+      RelaxedTogether::residuals<dim>(*A, truncation, b, x, residual);
   }
 
 

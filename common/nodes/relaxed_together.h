@@ -7,6 +7,7 @@
 
 #include <mpi.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -72,6 +73,20 @@ namespace Friction
       return sampled[1] > fewest * sampled[0];
     }
 
+    /** The share of nodes that have been found, over all processes, of those
+     * that are to be relaxed; nothing if it is too small. Collective. */
+    inline double
+    share_of(const std::size_t        n_found,
+             const std::vector<char> &is_relaxed,
+             const MPI_Comm           communicator)
+    {
+      const double n_relaxed =
+        std::count(is_relaxed.begin(), is_relaxed.end(), true);
+      const std::array<double, 2> sums = sum_over_processes(
+        std::array<double, 2>{{n_relaxed, double(n_found)}}, communicator);
+      return sums[1] <= fewest * sums[0] ? 0. : sums[1] / sums[0];
+    }
+
     /**
      * The residual $T(b-(A+\omega'')x)$ of a row, with truncated b; without a
      * truncation $b-Ax$.
@@ -96,6 +111,22 @@ namespace Friction
           r = times<dim>(truncation->projector(node).data(), r.data());
         }
       return r;
+    }
+
+    /** The same of all rows. */
+    template <int dim>
+    void
+    residuals(const NodeBlockMatrix<dim> &A,
+              const Truncation<dim>      *truncation,
+              const double               *b,
+              const double               *x,
+              double                     *result)
+    {
+      for (unsigned int i = 0; i < A.n_rows(); ++i)
+        {
+          const NodeValue<dim> r = residual<dim>(A, truncation, i, b, x);
+          std::copy(r.begin(), r.end(), result + dim * i);
+        }
     }
   } // namespace RelaxedTogether
 } // namespace Friction
