@@ -40,16 +40,24 @@ namespace Friction
   {
     if (dim < 3)
       return;
-    const auto may_be = [&](const unsigned int i) {
-      return may_be_in_plane(A, i);
+    // Positions are asked for, and all nodes looked at, only where it may be
+    // worth it.
+    const auto are_there = [&](const auto &may_be) {
+      return RelaxedTogether::are_there(
+        A.n_rows(), nodes.nodes, may_be, communicator);
     };
-    if (!RelaxedTogether::are_there(
-          A.n_rows(), nodes.nodes, may_be, communicator))
+    if (!are_there([&](const unsigned int i) { return may_be_in_plane(A, i); }))
+      return;
+    const auto positions = nodes.positions();
+    AssertDimension(positions.size(), A.n_rows());
+    if (!are_there([&](const unsigned int i) {
+          return may_be_in_plane(A, i, positions);
+        }))
       return;
 
     const std::vector<char> is_relaxed =
       RelaxedTogether::flags(A.n_rows(), nodes.nodes);
-    find_planes(nodes, is_relaxed);
+    find_planes(nodes, is_relaxed, positions);
     std::size_t n_found = 0;
     for (const auto &problem : problems)
       n_found += problem->nodes().size();
@@ -62,11 +70,11 @@ namespace Friction
 
   template <int dim>
   void
-  PlaneRelaxation<dim>::find_planes(const RelaxedNodes      &nodes,
-                                    const std::vector<char> &is_relaxed)
+  PlaneRelaxation<dim>::find_planes(
+    const RelaxedNodes                       &nodes,
+    const std::vector<char>                  &is_relaxed,
+    const std::vector<std::array<double, 3>> &positions)
   {
-    const auto positions = nodes.positions();
-    AssertDimension(positions.size(), A->n_rows());
     std::vector<char> is_truncated(A->n_rows());
     for (const unsigned int i : nodes.truncated)
       is_truncated[i] = true;

@@ -115,8 +115,9 @@ namespace Friction
 
     mutable std::vector<double> values;
 
-    void find_planes(const RelaxedNodes      &nodes,
-                     const std::vector<char> &is_relaxed);
+    void find_planes(const RelaxedNodes                       &nodes,
+                     const std::vector<char>                  &is_relaxed,
+                     const std::vector<std::array<double, 3>> &positions);
 
     std::vector<typename Problem::Node>
     nodes_of_problem(const RelaxedNodes                       &nodes,

@@ -42,29 +42,6 @@ namespace Friction
 
 
 
-    // Whether few couplings of a node are strong and have most of its diagonal.
-    template <int dim, typename IsStrong>
-    bool
-    has_few_strong(const NodeBlockMatrix<dim> &A,
-                   const unsigned int          row,
-                   const IsStrong             &is_strong)
-    {
-      if (A.row_begin(row) == A.row_end(row))
-        return false;
-      std::size_t n   = 0;
-      double      sum = 0.;
-      for (std::size_t e = A.row_begin(row) + 1; e < A.row_end(row); ++e)
-        if (is_strong(e))
-          {
-            ++n;
-            sum += strength(A, e);
-          }
-      return n > 0 && 2 * n < A.row_end(row) - A.row_begin(row) &&
-        sum >= strong_share * trace<dim>(A.block(A.row_begin(row)));
-    }
-
-
-
     Eigen::Vector3d
     unit_direction(const std::array<double, 3> &from,
                    const std::array<double, 3> &to)
@@ -94,6 +71,65 @@ namespace Friction
     {
       return std::abs(direction.dot(normal)) <= largest_sine;
     }
+
+
+
+    // Whether few couplings of a node are strong and have most of its diagonal.
+    template <int dim, typename IsStrong>
+    bool
+    has_few_strong(const NodeBlockMatrix<dim> &A,
+                   const unsigned int          row,
+                   const IsStrong             &is_strong)
+    {
+      if (A.row_begin(row) == A.row_end(row))
+        return false;
+      std::size_t n   = 0;
+      double      sum = 0.;
+      for (std::size_t e = A.row_begin(row) + 1; e < A.row_end(row); ++e)
+        if (is_strong(e))
+          {
+            ++n;
+            sum += strength(A, e);
+          }
+      return n > 0 && 2 * n < A.row_end(row) - A.row_begin(row) &&
+        sum >= strong_share * trace<dim>(A.block(A.row_begin(row)));
+    }
+
+
+
+    // Whether a node of few strong couplings is in a plane, and the normal of
+    // this plane.
+    template <int dim, typename IsStrong>
+    bool
+    find_normal(const NodeBlockMatrix<dim>               &A,
+                const unsigned int                        row,
+                const IsStrong                           &is_strong,
+                const std::vector<std::array<double, 3>> &positions,
+                Eigen::Vector3d                          &normal)
+    {
+      const auto direction = [&](const std::size_t e) {
+        return unit_direction(positions[row], positions[A.column(e)]);
+      };
+      Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
+      for (std::size_t e = A.row_begin(row) + 1; e < A.row_end(row); ++e)
+        if (is_strong(e) && A.column(e) < A.n_rows())
+          {
+            const Eigen::Vector3d d = direction(e);
+            moment += strength(A, e) * d * d.transpose();
+          }
+      if (exceed(moment, largest_variance * moment.trace()))
+        return false;
+      normal = eigenpairs(moment).vectors.col(0);
+
+      double in_plane = 0.;
+      for (std::size_t e = A.row_begin(row) + 1; e < A.row_end(row); ++e)
+        if (strength(A, e) > 0. &&
+            (A.column(e) >= A.n_rows() ? is_strong(e)
+                                       : is_flat(normal, direction(e))))
+          in_plane += strength(A, e);
+      return in_plane >=
+        share_of_diagonal * trace<dim>(A.block(A.row_begin(row)));
+    }
   } // namespace
 
 
@@ -106,6 +142,23 @@ namespace Friction
     return weakest > 0. && has_few_strong(A, row, [&](const std::size_t e) {
              return strength(A, e) >= weakest;
            });
+  }
+
+
+
+  template <int dim>
+  bool
+  may_be_in_plane(const NodeBlockMatrix<dim>               &A,
+                  const unsigned int                        row,
+                  const std::vector<std::array<double, 3>> &positions)
+  {
+    const double weakest   = weakest_of(A, row);
+    const auto   is_strong = [&](const std::size_t e) {
+      return strength(A, e) >= weakest;
+    };
+    Eigen::Vector3d normal;
+    return weakest > 0. && has_few_strong(A, row, is_strong) &&
+      find_normal(A, row, is_strong, positions, normal);
   }
 
 
@@ -134,31 +187,8 @@ namespace Friction
         const auto is_strong_here = [&](const std::size_t e) {
           return is_strong(i, e);
         };
-        if (!is_relaxed[i] || !has_few_strong(A, i, is_strong_here))
-          continue;
-        Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
-        for (std::size_t e = A.row_begin(i) + 1; e < A.row_end(i); ++e)
-          if (is_strong(i, e) && A.column(e) < n)
-            {
-              const Eigen::Vector3d d =
-                unit_direction(positions[i], positions[A.column(e)]);
-              moment += strength(A, e) * d * d.transpose();
-            }
-        if (exceed(moment, largest_variance * moment.trace()))
-          continue;
-        normals[i] = eigenpairs(moment).vectors.col(0);
-
-        double in_plane = 0.;
-        for (std::size_t e = A.row_begin(i) + 1; e < A.row_end(i); ++e)
-          if (strength(A, e) > 0. &&
-              (A.column(e) >= n
-                 ? is_strong(i, e)
-                 : is_flat(
-                     normals[i],
-                     unit_direction(positions[i], positions[A.column(e)]))))
-            in_plane += strength(A, e);
-        is_left[i] =
-          in_plane >= share_of_diagonal * trace<dim>(A.block(A.row_begin(i)));
+        is_left[i] = is_relaxed[i] && has_few_strong(A, i, is_strong_here) &&
+          find_normal(A, i, is_strong_here, positions, normals[i]);
       }
 
     std::vector<std::vector<unsigned int>> planes;
@@ -202,4 +232,10 @@ namespace Friction
                               const std::vector<std::array<double, 3>> &);
   template bool may_be_in_plane(const NodeBlockMatrix<2> &, const unsigned int);
   template bool may_be_in_plane(const NodeBlockMatrix<3> &, const unsigned int);
+  template bool may_be_in_plane(const NodeBlockMatrix<2> &,
+                                const unsigned int,
+                                const std::vector<std::array<double, 3>> &);
+  template bool may_be_in_plane(const NodeBlockMatrix<3> &,
+                                const unsigned int,
+                                const std::vector<std::array<double, 3>> &);
 } // namespace Friction

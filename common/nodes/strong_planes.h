@@ -50,10 +50,17 @@ namespace Friction
                 const std::vector<std::array<double, 3>> &positions);
 
   /** A quick look at a single row, without positions: a node in a plane says
-   * yes if it is not at an end of the body, and so do nodes of flat cells,
-   * which strong_planes() then knows better. With cubes all say no. */
+   * yes if it is not at an end of the body, and so do nodes of flat cells. With
+   * cubes all say no. */
   template <int dim>
   bool may_be_in_plane(const NodeBlockMatrix<dim> &A, const unsigned int row);
+
+  /** A closer look at a single row: what strong_planes() asks of a node, but
+   * for what its neighbours have to say of couplings. */
+  template <int dim>
+  bool may_be_in_plane(const NodeBlockMatrix<dim>               &A,
+                       const unsigned int                        row,
+                       const std::vector<std::array<double, 3>> &positions);
 } // namespace Friction
 
 #endif
