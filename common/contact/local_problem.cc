@@ -58,7 +58,7 @@ namespace Friction
   LocalSolution<dim>
   LocalProblem<dim>::solve(const std::array<double, dim>     &b,
                            const double                       bound,
-                           const std::array<double, dim - 1> &prescribed,
+                           const std::array<double, dim - 1> &before,
                            const bool contact_is_likely) const
   {
     LocalSolution<dim>          z;
@@ -73,7 +73,7 @@ namespace Friction
       z.normal = gap;
       for (unsigned int i = 0; i < dim - 1; ++i)
         force[i] = b[i + 1] - a_tn[i] * gap;
-      z.tangential = contact.solve(force, bound, prescribed);
+      z.tangential = contact.solve(force, bound, before);
     };
 
     // At the obstacle, if it pushes and does not pull.
@@ -89,7 +89,7 @@ namespace Friction
       {
         for (unsigned int i = 0; i < dim - 1; ++i)
           force[i] = b[i + 1] - a_tn[i] * b[0] / a_nn;
-        z.tangential = open.solve(force, bound, prescribed);
+        z.tangential = open.solve(force, bound, before);
         z.normal     = normal_force(0.) / a_nn;
         z.in_contact = !(z.normal < gap);
         if (z.in_contact)

@@ -63,15 +63,16 @@ namespace Friction
      * Solves the problem.
      * @param b           forces in the frame.
      * @param bound       $s \ge 0$; zero means no friction.
-     * @param prescribed  values of the tangential displacements that cannot
-     *                    move; the others are ignored.
+     * @param before      the tangential displacement before: what cannot move
+     *                    stays, and of the others it is a guess that does not
+     *                    change the solution.
      * @param contact_is_likely  which of the two cases to try first: this does
      *                    not change the solution, but with a good guess only
      *                    one slip problem has to be solved.
      */
     LocalSolution<dim> solve(const std::array<double, dim>     &b,
                              const double                       bound,
-                             const std::array<double, dim - 1> &prescribed,
+                             const std::array<double, dim - 1> &before,
                              const bool contact_is_likely = false) const;
 
   private:

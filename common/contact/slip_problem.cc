@@ -42,24 +42,30 @@ namespace Friction
 
 
 
-    // The direction (1,t)/sqrt(1+t^2), t >= 0, where
-    //
-    //   k t + d t/sqrt(1+t^2) = r,   k, d, r >= 0,
-    //
-    // to rounding of k, d, r and of r-d, which may be known better than as a
-    // difference. Where t > 1, the equation times c = 1/t is
+    // k t + d t/sqrt(1+t^2) = r,   k, d, r >= 0. What r-d is may be known
+    // better than as a difference.
+    struct EquationForSlip
+    {
+      double k, d, r, r_minus_d;
+    };
+
+
+
+    // The direction (1,t)/sqrt(1+t^2), t >= 0, where t solves the equation, to
+    // rounding of its coefficients. Where t > 1, the equation times c = 1/t is
     //
     //   (r-d) c + d (c - c/sqrt(1+c^2)) = k,
     //
     // all of whose terms can be computed without cancellation. Either way the
     // unknown lies in [0,1], and Halley's iteration, the one of third order, is
     // enclosed by a bracket.
+    //
+    // It begins at a guess of t if that turns out to be a good one. Towards the
+    // end of a solution nearly all are, and one or two steps are enough.
     Direction
-    find_direction(const double  k,
-                   const double  d,
-                   const double  r,
-                   const double  r_minus_d,
-                   unsigned int *n_iterations)
+    find_direction(const EquationForSlip &equation,
+                   const double           guess,
+                   unsigned int          *n_iterations)
     {
       constexpr double       sqrt_half     = 0.70710678118654752;
       constexpr unsigned int maximum_steps = 100;
@@ -67,55 +73,85 @@ namespace Friction
       // The error after a step of this relative size is the cube of it.
       constexpr double tolerance = 4e-6;
 
-      const bool   flat = (k + sqrt_half * d >= r); // t <= 1
-      double       x, lower = 0., upper = 1.;
-      unsigned int n = 0;
-      if (flat)
-        // The left side is concave, and below its tangent in zero.
-        x = lower = std::min(1., r / (k + d));
-      else
+      // A guess from which the first step is no larger.
+      constexpr double good = .1;
+
+      const double k = equation.k, d = equation.d, r = equation.r,
+                   r_minus_d = equation.r_minus_d;
+      const bool flat        = (k + sqrt_half * d >= r); // t <= 1
+
+      // A step from x, and with its left side minus its right one.
+      double     f;
+      const auto step_from = [&](const double x) {
+        const double u2 = 1. / (1. + x * x), u = std::sqrt(u2);
+        double       f_1, f_2;
+        if (flat)
+          {
+            f   = x * (k + d * u) - r;
+            f_1 = k + d * u * u2;
+            f_2 = -3. * d * x * u * u2 * u2;
+          }
+        else
+          {
+            const double one_minus_u = x * x * u2 / (1. + u);
+            f                        = x * (r_minus_d + d * one_minus_u) - k;
+            f_1 = r_minus_d + d * one_minus_u * (1. + u + u2);
+            f_2 = 3. * d * x * u * u2 * u2;
+          }
+        return x - f * f_1 / (f_1 * f_1 - .5 * f * f_2);
+      };
+
+      // A bound of t from below: the left side is concave, and below its
+      // tangent in zero. Of c = 1/t: with u = 1/sqrt(1+c^2), the second term is
+      // d c (1-u), and 1-u <= c^2/2.
+      double lower = flat ? std::min(1., r / (k + d))
+        : r_minus_d < 0.  ? std::min(1., std::sqrt(-2. * r_minus_d / d))
+                          : 0.;
+      double upper = 1.;
+
+      // Far below the bound the iteration may come to rest where there is no
+      // solution: for r < d the left side decreases at first.
+      unsigned int n    = 0;
+      bool         done = false;
+      double       x    = (flat || guess == 0.) ? guess : 1. / guess;
+      if (x > 0. && x <= 1. && x >= .9 * lower)
         {
-          // With u = 1/sqrt(1+c^2), the second term is d c (1-u), and
-          // c^2/2 >= 1-u >= gamma c^2. Therefore c is below the root of
-          // (r-d) c + gamma d c^3 = k, and that is below
-          const double gamma_d = (1. - sqrt_half) * d;
-          const double cubic   = std::cbrt(k / gamma_d);
-          if (r_minus_d > 0)
-            x = std::min(k / r_minus_d, cubic); // d may be zero
+          const double next   = step_from(x);
+          const double change = std::abs(next - x) / x;
+          n                   = 1;
+          done                = change <= tolerance;
+          // Not a good one, or not a number.
+          x = change <= good ? std::min(next, 1.) : 0.;
+        }
+      else
+        x = 0.;
+      if (x == 0.)
+        {
+          if (flat)
+            x = lower;
           else
             {
-              lower = std::min(1., std::sqrt(-2. * r_minus_d / d));
-              x     = std::sqrt(cubic * cubic - r_minus_d / gamma_d);
+              // Also 1-u >= gamma c^2. Therefore c is below the root of
+              // (r-d) c + gamma d c^3 = k, and that is below
+              const double gamma_d = (1. - sqrt_half) * d;
+              const double cubic   = std::cbrt(k / gamma_d);
+              x                    = r_minus_d > 0
+                                   ? std::min(k / r_minus_d, cubic) // d may be zero
+                                   : std::sqrt(cubic * cubic - r_minus_d / gamma_d);
+              x                    = std::min(x, 1.);
             }
-          x = std::min(x, 1.);
         }
 
-      while (n < maximum_steps)
+      while (!done && n < maximum_steps)
         {
           ++n;
-          const double u2 = 1. / (1. + x * x), u = std::sqrt(u2);
-          double       f, f_1, f_2;
-          if (flat)
-            {
-              f   = x * (k + d * u) - r;
-              f_1 = k + d * u * u2;
-              f_2 = -3. * d * x * u * u2 * u2;
-            }
-          else
-            {
-              const double one_minus_u = x * x * u2 / (1. + u);
-              f                        = x * (r_minus_d + d * one_minus_u) - k;
-              f_1 = r_minus_d + d * one_minus_u * (1. + u + u2);
-              f_2 = 3. * d * x * u * u2 * u2;
-            }
+          double next             = step_from(x);
           (f < 0 ? lower : upper) = x;
-          double next             = x - f * f_1 / (f_1 * f_1 - .5 * f * f_2);
           if (!(next >= lower && next <= upper))
             next = .5 * (lower + upper);
           const double change = std::abs(next - x);
           x                   = next;
-          if (change <= tolerance * x)
-            break;
+          done                = change <= tolerance * x;
         }
       if (n_iterations != nullptr)
         *n_iterations = n;
@@ -139,10 +175,10 @@ namespace Friction
   std::array<double, 1>
   SlipProblem<1>::solve(const std::array<double, 1> &b,
                         const double                 kappa,
-                        const std::array<double, 1> &prescribed) const
+                        const std::array<double, 1> &before) const
   {
     return n_free_components == 0
-      ? prescribed
+      ? before
       : std::array<double, 1>{{shrink(a, b[0], kappa)}};
   }
 
@@ -216,23 +252,24 @@ namespace Friction
   std::array<double, 2>
   SlipProblem<2>::solve(const std::array<double, 2> &b,
                         const double                 kappa,
-                        const std::array<double, 2> &prescribed) const
+                        const std::array<double, 2> &before) const
   {
     if (n_free_components == 2)
-      return solver == LocalSolver::uzawa ? solve_uzawa(b, kappa)
-                                          : solve_secular_equation(b, kappa);
+      return solver == LocalSolver::uzawa
+        ? solve_uzawa(b, kappa)
+        : solve_secular_equation(b, kappa, before);
     if (n_free_components == 0)
-      return prescribed;
+      return before;
 
     // One component is left. That the other one is prescribed to be no more
     // than the smallest of numbers makes no difference.
-    const double w = prescribed[1], force = b[0] - a_12 * w,
-                 k = a_11 * std::abs(w);
+    const double w = before[1], force = b[0] - a_12 * w, k = a_11 * std::abs(w);
     if (k < std::numeric_limits<double>::min() || kappa == 0.)
       return {{shrink(a_11, force, kappa), w}};
-    const double    r         = std::abs(force);
-    const Direction slip      = find_direction(k, kappa, r, r - kappa, nullptr);
-    const double    magnitude = std::abs(w) * (slip.sine / slip.cosine);
+    const double    r = std::abs(force);
+    const Direction slip =
+      find_direction({k, kappa, r, r - kappa}, 0., nullptr);
+    const double magnitude = std::abs(w) * (slip.sine / slip.cosine);
     return {{std::copysign(magnitude, force), w}};
   }
 
@@ -241,6 +278,7 @@ namespace Friction
   std::array<double, 2>
   SlipProblem<2>::solve_secular_equation(const std::array<double, 2> &b,
                                          const double                 kappa,
+                                         const std::array<double, 2> &before,
                                          unsigned int *n_iterations) const
   {
     if (n_iterations != nullptr)
@@ -255,16 +293,21 @@ namespace Friction
 
     // Close to the edge of the cone, how much b_2 differs from kappa is taken
     // from the excess, since the rotation is subject to rounding.
-    const double    b_1 = std::abs(force[0]), b_2 = std::abs(force[1]);
-    const double    b_2_minus_kappa = excess < kappa * kappa
-         ? (excess - b_1 * b_1) / (b_2 + kappa)
-         : b_2 - kappa;
-    const Direction e               = find_direction(a_2 * b_1,
-                                       difference * kappa,
-                                       a_1 * b_2,
-                                       a_1 * b_2_minus_kappa + a_2 * kappa,
-                                       n_iterations);
-    const double    ell = amount_of_slip(e.cosine, e.sine, kappa, excess);
+    const double b_1 = std::abs(force[0]), b_2 = std::abs(force[1]);
+    const double b_2_minus_kappa = excess < kappa * kappa
+      ? (excess - b_1 * b_1) / (b_2 + kappa)
+      : b_2 - kappa;
+    // Nothing can be guessed from a node at rest, or that has moved along an
+    // axis.
+    const std::array<double, 2> slip = to_eigenbasis(before);
+    const Direction             e =
+      find_direction({a_2 * b_1,
+                      difference * kappa,
+                      a_1 * b_2,
+                      a_1 * b_2_minus_kappa + a_2 * kappa},
+                     slip[0] != 0. ? std::abs(slip[1] / slip[0]) : 0.,
+                     n_iterations);
+    const double ell = amount_of_slip(e.cosine, e.sine, kappa, excess);
     return from_eigenbasis(std::copysign(ell * e.cosine, force[0]),
                            std::copysign(ell * e.sine, force[1]));
   }
@@ -311,7 +354,8 @@ namespace Friction
       }
 
     unsigned int                n_more;
-    const std::array<double, 2> z = solve_secular_equation(b, kappa, &n_more);
+    const std::array<double, 2> z =
+      solve_secular_equation(b, kappa, {{}}, &n_more);
     if (n_iterations != nullptr)
       *n_iterations = maximum_uzawa_steps + n_more;
     return z;

@@ -37,7 +37,7 @@ namespace Friction
 
     std::array<double, 1> solve(const std::array<double, 1> &b,
                                 const double                 kappa,
-                                const std::array<double, 1> &prescribed) const;
+                                const std::array<double, 1> &before) const;
 
   private:
     double       a;
@@ -67,7 +67,8 @@ namespace Friction
    *     = a_1 |b_2|. @f]
    * The left side increases, from zero, and is concave; written for $1/t$ where
    * $t>1$ it is convex. There are close bounds to start from, and four steps
-   * are enough. Nothing special happens where the slip vanishes,
+   * are enough; or one or two, if the slip was about the same before. Nothing
+   * special happens where the slip vanishes,
    * $|b| \to \kappa$, since the direction does not: Newton's method for $z$
    * itself fails there (Remark 6.6). Finally, the square of the inclusion,
    * @f[ |b|^2 - \kappa^2 = 2 \kappa \ell\, e^T a e + \ell^2 |a e|^2, @f]
@@ -97,22 +98,25 @@ namespace Friction
 
     /**
      * Solves the problem.
-     * @param prescribed  values of the components that are; the others are
-     *                    ignored.
+     * @param before  the values that prescribed components keep, and of the
+     *                others a guess: with a good one the direction of slip is
+     *                found sooner, with any other it is found, too.
      */
     std::array<double, 2> solve(const std::array<double, 2> &b,
                                 const double                 kappa,
-                                const std::array<double, 2> &prescribed) const;
+                                const std::array<double, 2> &before) const;
 
     /**
      * The minimiser over all $z$ by the equation for the direction of slip,
      * to rounding.
+     * @param before        a guess.
      * @param n_iterations  if given, where to put the number of iterations.
      */
     std::array<double, 2>
     solve_secular_equation(const std::array<double, 2> &b,
                            const double                 kappa,
-                           unsigned int *n_iterations = nullptr) const;
+                           const std::array<double, 2> &before = {{}},
+                           unsigned int *n_iterations          = nullptr) const;
 
     /**
      * The same by a Uzawa method [Glo84, p. 170], the thesis's choice: with

@@ -8,6 +8,14 @@
 
 namespace Friction
 {
+  namespace
+  {
+    // How many times what is left may be what has been added and subtracted.
+    constexpr double largest_cancellation = 1e4;
+  } // namespace
+
+
+
   template <int dim>
   Recombination<dim>::Recombination(const DiscreteProblem<dim> &problem,
                                     const unsigned int          n_steps)
@@ -30,14 +38,14 @@ namespace Friction
   template <int dim>
   unsigned int
   Recombination<dim>::improve(VectorType            &v,
-                              VectorType            &Av,
+                              double                &vAv,
                               const Iterate         &x,
                               const VectorType      &r,
                               const Truncation<dim> &truncation)
   {
     if (n_steps == 0 || !x.has_step())
       return 0;
-    const unsigned int n_used = combine(v, Av, x, r, truncation);
+    const unsigned int n_used = combine(v, vAv, x, r, truncation);
     if (n_steps > 1)
       {
         older_steps.push_front(x.step);
@@ -56,7 +64,7 @@ namespace Friction
   template <int dim>
   unsigned int
   Recombination<dim>::combine(VectorType            &v,
-                              VectorType            &Av,
+                              double                &vAv,
                               const Iterate         &x,
                               const VectorType      &r,
                               const Truncation<dim> &truncation) const
@@ -68,7 +76,8 @@ namespace Friction
         steps.push_back(&older_steps[i]);
         products.push_back(&older_images[i]);
       }
-    std::vector<const VectorType *> basis = {&v}, images = {&Av};
+    // The image of v itself is not known.
+    std::vector<const VectorType *> basis = {&v}, images = {nullptr};
 
     // Which steps are in the free subspace, up to the rounding of the iterates
     // themselves?
@@ -139,17 +148,25 @@ namespace Friction
         for (unsigned int i = 0; i < n; ++i)
           {
             *sum++ += share(r, *basis[i]);
-            for (unsigned int j = 0; j <= i; ++j)
-              *sum++ += share(*basis[i], *images[j]);
+            for (unsigned int j = 0; j <= i; ++j, ++sum)
+              if (i > 0)
+                *sum += share(*images[i], *basis[j]);
           }
       }
+    products_of_all[1] = vAv;
+    // With the matrix alone they will be needed once more.
+    const std::vector<double> shares = products_of_all;
     for (unsigned int i = 0, entry = 0; i < n; ++i)
       {
         ++entry;
         for (unsigned int j = 0; j <= i; ++j)
           products_of_all[entry++] += friction(*basis[i], *basis[j]);
       }
+    products_of_all.insert(products_of_all.end(), shares.begin(), shares.end());
     sum_over_processes(products_of_all, comm);
+    const std::vector<double> with_matrix(
+      products_of_all.begin() + shares.size(), products_of_all.end());
+    products_of_all.resize(shares.size());
     // A direction without energy, like a correction from coarse levels on which
     // nothing can move, is left out.
     const std::vector<double> coefficients =
@@ -158,13 +175,32 @@ namespace Friction
       return 0;
 
     combine_owned(v, coefficients[0], coefficients[1], *basis[1]);
-    combine_owned(Av, coefficients[0], coefficients[1], *images[1]);
     for (unsigned int i = 2; i < n; ++i)
-      {
-        add_owned(v, coefficients[i], *basis[i]);
-        add_owned(Av, coefficients[i], *images[i]);
-      }
+      add_owned(v, coefficients[i], *basis[i]);
     truncation.apply(v.begin());
+
+    // The product of the sum by those of its terms, unless most of these cancel
+    // out: if steps are nearly the same, coefficients are large.
+    const auto product_of_sum = [&](const std::vector<double> &products,
+                                    const bool                 of_sizes) {
+      double sum = 0.;
+      for (unsigned int i = 0, entry = 0; i < n; ++i)
+        {
+          ++entry;
+          for (unsigned int j = 0; j <= i; ++j)
+            {
+              const double term = (i == j ? 1. : 2.) * coefficients[i] *
+                coefficients[j] * products[entry++];
+              sum += of_sizes ? std::abs(term) : term;
+            }
+        }
+      return sum;
+    };
+    const bool cancels =
+      !(product_of_sum(with_matrix, true) <=
+        largest_cancellation * product_of_sum(with_matrix, false));
+    vAv = cancels ? problem.stiffness.energy_product(v)
+                  : product_of_sum(shares, false);
     return n - 1;
   }
 

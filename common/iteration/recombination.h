@@ -41,15 +41,18 @@ namespace Friction
     void clear();
 
     /**
-     * Replaces the correction @p v, with product @p Av = A v, by the
-     * combination of v and previous steps that minimises the energy of the
-     * linearised problem with truncated residual @p r, the second derivative of
-     * friction in @p truncation included; @p Av is updated alike.
-     * @param x  the smoothed iterate, which knows its last step.
+     * Replaces the correction @p v by the combination of v and previous steps
+     * that minimises the energy of the linearised problem with truncated
+     * residual @p r, the second derivative of friction in @p truncation
+     * included.
+     * @param vAv  this process' share of $v^TAv$, which becomes that of the
+     *             new v. No other product of A and v is needed: A times the
+     *             steps is known, and A is symmetric.
+     * @param x    the smoothed iterate, which knows its last step.
      * @return the number of previous steps that took part. Collective.
      */
     unsigned int improve(VectorType            &v,
-                         VectorType            &Av,
+                         double                &vAv,
                          const Iterate         &x,
                          const VectorType      &r,
                          const Truncation<dim> &truncation);
@@ -62,7 +65,7 @@ namespace Friction
     std::deque<VectorType> older_steps, older_images;
 
     unsigned int combine(VectorType            &v,
-                         VectorType            &Av,
+                         double                &vAv,
                          const Iterate         &x,
                          const VectorType      &r,
                          const Truncation<dim> &truncation) const;

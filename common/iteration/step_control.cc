@@ -72,9 +72,8 @@ namespace Friction
                            const Truncation<dim> &truncation)
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::line_search);
-    Av.reinit(v, true);
-    problem.stiffness.vmult(Av, v);
-    recombination.improve(v, Av, x, r, truncation);
+    vAv = problem.stiffness.energy_product(v);
+    recombination.improve(v, vAv, x, r, truncation);
   }
 
 
@@ -84,7 +83,7 @@ namespace Friction
   LineSearch<dim>::replace(const VectorType &v)
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::line_search);
-    problem.stiffness.vmult(Av, v);
+    vAv = problem.stiffness.energy_product(v);
   }
 
 
@@ -106,7 +105,7 @@ namespace Friction
     const bool          stopped   = products.n_changed > 0;
     if (stopped)
       {
-        problem.stiffness.vmult(Av, v);
+        vAv      = problem.stiffness.energy_product(v);
         products = products_along(v, x.residual, 0);
       }
     if (!(products.curvature > 0))
@@ -135,7 +134,7 @@ namespace Friction
                                             const VectorType &v,
                                             const double      largest)
   {
-    problem.stiffness.vmult(Av, v);
+    vAv                     = problem.stiffness.energy_product(v);
     const Products products = products_along(v, x.residual, 0);
     return functional.minimize_along(
       v,
@@ -153,8 +152,8 @@ namespace Friction
                                 const VectorType &v,
                                 const double      length)
   {
+    VectorType Av(v), moved(x.u), r(x.residual);
     problem.stiffness.vmult(Av, v);
-    VectorType moved(x.u), r(x.residual);
     add_owned(moved, length, v);
     add_owned(r, -length, Av);
     return functional.energy(moved, r, x.state);
@@ -215,8 +214,7 @@ namespace Friction
                                   const unsigned int n_changed) const
   {
     const std::array<double, 3> sums = sum_over_processes(
-      std::array<double, 3>{
-        {dot_owned(residual, v), dot_owned(v, Av), 1. * n_changed}},
+      std::array<double, 3>{{dot_owned(residual, v), vAv, 1. * n_changed}},
       problem.communicator());
     return {sums[0], sums[1], static_cast<std::size_t>(sums[2])};
   }

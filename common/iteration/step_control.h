@@ -121,7 +121,9 @@ namespace Friction
     const DiscreteProblem<dim>  &problem;
     const double                 largest_step;
     Recombination<dim>           recombination;
-    VectorType                   Av;
+
+    // This process' share of v.Av, for the correction v.
+    double vAv = 0.;
 
     // What the line search along v needs to know of its quadratic part, and a
     // number that is summed up in passing.

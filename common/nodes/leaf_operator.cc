@@ -62,6 +62,16 @@ namespace Friction
 
 
   template <int dim>
+  double
+  LeafOperator<dim>::energy_product(const VectorType &v) const
+  {
+    update_ghosts(v);
+    return matrix.energy_product(v.begin());
+  }
+
+
+
+  template <int dim>
   void
   LeafOperator<dim>::residual(VectorType       &r,
                               const VectorType &f,

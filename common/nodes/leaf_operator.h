@@ -55,6 +55,10 @@ namespace Friction
     /** Av := A v. Collective. */
     void vmult(VectorType &Av, const VectorType &v) const;
 
+    /** The share of this process in $v^TAv$, which is to be summed over all.
+     * Takes half of what vmult() does. Collective. */
+    double energy_product(const VectorType &v) const;
+
     /** r := f - A v. Collective. */
     void
     residual(VectorType &r, const VectorType &f, const VectorType &v) const;

@@ -175,6 +175,14 @@ namespace Friction
     /** y = A x. */
     void vmult(double *y, const double *x) const;
 
+    /** The share of this process in $x^TAx$, if A is symmetric: half the
+     * work of vmult() and a scalar product. */
+    double
+    energy_product(const double *x) const
+    {
+      return RowKernels::energy<dim>(rows(), {0, n_rows()}, n_rows(), x);
+    }
+
     /** r = b - A x. */
     void residual(double *r, const double *b, const double *x) const;
 

@@ -251,6 +251,43 @@ namespace Friction
 
 
 
+      // In a row's order, see NodePattern, the diagonal block comes first, then
+      // larger numbers, those of other processes last, and then smaller ones,
+      // which are not read.
+      template <int dim, typename Four>
+      inline DEAL_II_ALWAYS_INLINE double
+      energy_body(const BlockRows<dim> &matrix,
+                  const RowRange       &rows,
+                  const unsigned int    n_rows,
+                  const double         *x)
+      {
+        const BlockRows<dim> A   = matrix;
+        double               sum = 0.;
+        for (unsigned int i = rows.first; i < rows.second; ++i)
+          {
+            const std::size_t begin = A.starts[i], end = A.starts[i + 1];
+            if (begin == end)
+              continue;
+            std::size_t larger = begin + 1;
+            while (larger < end && A.columns[larger] - i < n_rows - i)
+              ++larger;
+            std::size_t ghosts = larger;
+            while (ghosts < end && A.columns[ghosts] >= n_rows)
+              ++ghosts;
+
+            const double  *xi = x + dim * static_cast<std::size_t>(i);
+            Sum<dim, Four> twice, once;
+            add_blocks<1>(twice, A, begin + 1, larger - begin - 1, x);
+            once.add(A.blocks + dim * dim * begin, xi);
+            add_blocks<1>(once, A, larger, ghosts - larger, x);
+            for (int d = 0; d < dim; ++d)
+              sum += xi[d] * (2. * twice[d] + once[d]);
+          }
+        return sum;
+      }
+
+
+
       // Rows are read from front to back or from back to front, like the
       // matrix: processors foresee what is read next, as long as it goes on in
       // one direction. In a row's order, see NodePattern, the node that has
@@ -358,6 +395,16 @@ namespace Friction
       }
 
       template <int dim>
+      FRICTION_AVX2 double
+      energy_avx2(const BlockRows<dim> &A,
+                  const RowRange       &rows,
+                  const unsigned int    n_rows,
+                  const double         *x)
+      {
+        return energy_body<dim, OneQuad>(A, rows, n_rows, x);
+      }
+
+      template <int dim>
       FRICTION_AVX2 void
       relax_avx2(const BlockRows<dim> &A,
                  const NodeBlock<dim> *inverses,
@@ -412,6 +459,22 @@ namespace Friction
 
 
     template <int dim>
+    double
+    energy(const BlockRows<dim> &A,
+           const RowRange       &rows,
+           const unsigned int    n_rows,
+           const double         *x)
+    {
+#ifdef FRICTION_AVX2
+      if (instructions_in_use == Instructions::avx2)
+        return energy_avx2<dim>(A, rows, n_rows, x);
+#endif
+      return energy_body<dim, TwoPairs>(A, rows, n_rows, x);
+    }
+
+
+
+    template <int dim>
     void
     relax(const BlockRows<dim> &A,
           const NodeBlock<dim> *inverses,
@@ -440,6 +503,10 @@ namespace Friction
                               double *,
                               const double *,
                               const double *);
+    template double       energy<2>(const BlockRows<2> &,
+                              const RowRange &,
+                              const unsigned int,
+                              const double *);
     template void         relax<2>(const BlockRows<2> &,
                            const NodeBlock<2> *,
                            const RowLoop &,
@@ -453,6 +520,10 @@ namespace Friction
                               const RowLoop &,
                               double *,
                               const double *,
+                              const double *);
+    template double       energy<3>(const BlockRows<3> &,
+                              const RowRange &,
+                              const unsigned int,
                               const double *);
     template void         relax<3>(const BlockRows<3> &,
                            const NodeBlock<3> *,

@@ -59,7 +59,7 @@ namespace Friction
 
 
 
-  /** The three loops that a solution spends its time in, compiled for several
+  /** The loops that a solution spends its time in, compiled for several
    * sets of Instructions. */
   namespace RowKernels
   {
@@ -92,6 +92,19 @@ namespace Friction
                   const RowLoop        &loop,
                   double               *r,
                   const double         *b,
+                  const double         *x);
+
+    /**
+     * What some rows of a symmetric matrix have in $x^TAx$: their diagonal
+     * blocks once, their couplings to rows with larger numbers twice, and those
+     * to columns from @p n_rows on, the rows of other processes, once. For all
+     * @p n_rows rows, and over all processes, this is the whole product, and
+     * only half of the matrix has been read.
+     */
+    template <int dim>
+    double energy(const BlockRows<dim> &A,
+                  const RowRange       &rows,
+                  const unsigned int    n_rows,
                   const double         *x);
 
     /**

@@ -130,6 +130,24 @@ namespace Friction
       return in_plane >=
         share_of_diagonal * trace<dim>(A.block(A.row_begin(row)));
     }
+
+
+
+    // The same if only this node is asked which of its couplings are strong.
+    template <int dim>
+    bool
+    find_normal(const NodeBlockMatrix<dim>               &A,
+                const unsigned int                        row,
+                const std::vector<std::array<double, 3>> &positions,
+                Eigen::Vector3d                          &normal)
+    {
+      const double weakest   = weakest_of(A, row);
+      const auto   is_strong = [&](const std::size_t e) {
+        return strength(A, e) >= weakest;
+      };
+      return weakest > 0. && has_few_strong(A, row, is_strong) &&
+        find_normal(A, row, is_strong, positions, normal);
+    }
   } // namespace
 
 
@@ -152,13 +170,20 @@ namespace Friction
                   const unsigned int                        row,
                   const std::vector<std::array<double, 3>> &positions)
   {
-    const double weakest   = weakest_of(A, row);
-    const auto   is_strong = [&](const std::size_t e) {
-      return strength(A, e) >= weakest;
-    };
     Eigen::Vector3d normal;
-    return weakest > 0. && has_few_strong(A, row, is_strong) &&
-      find_normal(A, row, is_strong, positions, normal);
+    if (!find_normal(A, row, positions, normal))
+      return false;
+    const double weakest = weakest_of(A, row);
+    for (std::size_t e = A.row_begin(row) + 1; e < A.row_end(row); ++e)
+      {
+        const unsigned int j = A.column(e);
+        Eigen::Vector3d    another;
+        if (j < A.n_rows() && strength(A, e) >= weakest &&
+            is_flat(normal, unit_direction(positions[row], positions[j])) &&
+            find_normal(A, j, positions, another))
+          return true;
+      }
+    return false;
   }
 
 

@@ -56,7 +56,10 @@ namespace Friction
   bool may_be_in_plane(const NodeBlockMatrix<dim> &A, const unsigned int row);
 
   /** A closer look at a single row: what strong_planes() asks of a node, but
-   * for what its neighbours have to say of couplings. */
+   * for what its neighbours have to say of couplings; and a plane has more
+   * nodes than this one. A node whose neighbours find fewer of its couplings
+   * strong than itself, as where cells get smaller, may be in a plane though it
+   * says no: this is for samples. */
   template <int dim>
   bool may_be_in_plane(const NodeBlockMatrix<dim>               &A,
                        const unsigned int                        row,

@@ -3,8 +3,9 @@
 // used to have and is kept here for comparison, and for the library's kernels
 // with each kind of instructions that the processor has; one sweep, three that
 // follow each other through the cache, and three with the residual, forwards
-// and backwards. All are measured in turn, many times, and the least is
-// printed.
+// and backwards. And a product with the matrix, A x, and x.Ax, for which the
+// library reads half of the matrix and the plain loop all of it. All are
+// measured in turn, many times, and the least is printed.
 //
 // Beside it what part that is of what the machine can do: of memory, as
 // measured by a triad a = b + s c, and of arithmetic, as measured by products
@@ -23,6 +24,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <iostream>
 #include <numeric>
 #include <string>
@@ -109,6 +111,29 @@ namespace benchmark_sweeps
     }
 
     void
+    vmult(double *y, const double *x) const
+    {
+      for (unsigned int i = 0; i + 1 < starts.size(); ++i)
+        {
+          const NodeValue<dim> product = row_times(i, x);
+          std::copy_n(product.begin(), dim, y + dim * i);
+        }
+    }
+
+    double
+    energy_product(const double *x) const
+    {
+      double sum = 0.;
+      for (unsigned int i = 0; i + 1 < starts.size(); ++i)
+        {
+          const NodeValue<dim> product = row_times(i, x);
+          for (int d = 0; d < dim; ++d)
+            sum += x[dim * i + d] * product[d];
+        }
+      return sum;
+    }
+
+    void
     relax(const RowRange &rows,
           const double   *b,
           double         *x,
@@ -183,7 +208,6 @@ namespace benchmark_sweeps
                            const bool         with_residual) {
       if (column > 0)
         {
-          instructions_in_use = instructions[column - 1];
           relaxation.run(sweeps,
                          b.data(),
                          x.data(),
@@ -204,24 +228,67 @@ namespace benchmark_sweeps
         no_ghosts,
         x.data());
     };
+    const auto product = [&](const unsigned int column) {
+      if (column > 0)
+        A.vmult(r.data(), x.data());
+      else
+        plain.vmult(r.data(), x.data());
+    };
+    double     energy         = 0.;
+    const auto energy_product = [&](const unsigned int column) {
+      energy += column > 0 ? A.energy_product(x.data())
+                           : plain.energy_product(x.data());
+    };
+    // What a pass must read and write at least: blocks and column numbers, row
+    // starts, and the vector twice; sweeps also read inverse diagonals and the
+    // right hand side, and an energy product half of the matrix and no second
+    // vector. And the blocks that are multiplied.
+    const double bytes_of_matrix = A.n_blocks() *
+      (dim * dim * sizeof(double) + sizeof(unsigned int)),
+                 bytes_of_vector = n * dim * sizeof(double),
+                 bytes_of_starts = n * sizeof(std::size_t);
+    const double bytes_of_sweep  = bytes_of_matrix + bytes_of_starts +
+      3 * bytes_of_vector + n * dim * dim * sizeof(double);
     struct Row
     {
-      const char         *name;
-      Sweeps              sweeps;
-      bool                with_residual;
-      std::vector<double> seconds;
+      std::string                             name;
+      unsigned int                            n_passes;
+      double                                  bytes, n_blocks;
+      std::function<void(const unsigned int)> run;
+      std::vector<double>                     seconds;
     };
-    std::vector<Row> rows;
+    std::vector<Row>          rows;
+    const std::vector<double> never(n_columns, 1e300);
+    const auto                add_sweeps = [&](const Sweeps &sweeps,
+                                const bool    with_residual) {
+      rows.push_back(
+        {std::to_string(sweeps.number) +
+           (sweeps.backwards ? " backwards" : " forwards") +
+           (with_residual ? ", and residual" : ""),
+         sweeps.number + with_residual,
+         bytes_of_sweep,
+         (sweeps.number + with_residual) * (1. * A.n_blocks() + n),
+         [&sweep, sweeps, with_residual](const unsigned int column) {
+           sweep(column, sweeps, with_residual);
+         },
+         never});
+    };
     for (const bool backwards : {false, true})
       for (const unsigned int number : {1, 3})
-        rows.push_back({backwards ? "backwards" : "forwards",
-                        {number, backwards},
-                        false,
-                        std::vector<double>(n_columns, 1e300)});
-    rows.push_back({"forwards, and residual",
-                    {3, false},
-                    true,
-                    std::vector<double>(n_columns, 1e300)});
+        add_sweeps({number, backwards}, false);
+    add_sweeps({3, false}, true);
+    rows.push_back({"A x",
+                    1,
+                    bytes_of_matrix + bytes_of_starts + 2 * bytes_of_vector,
+                    1. * A.n_blocks(),
+                    product,
+                    never});
+    rows.push_back({"x.Ax",
+                    1,
+                    .5 * bytes_of_matrix + bytes_of_starts + bytes_of_vector,
+                    .5 * (A.n_blocks() + n),
+                    energy_product,
+                    never});
 
     // A large matrix is measured less often than a small one.
     const unsigned int n_times = 20 + 200000 / (A.n_blocks() / 100 + 1);
@@ -229,23 +296,20 @@ namespace benchmark_sweeps
       for (Row &row : rows)
         for (unsigned int column = 0; column < n_columns; ++column)
           {
+            if (column > 0)
+              instructions_in_use = instructions[column - 1];
             Timer timer;
-            sweep(column, row.sweeps, row.with_residual);
+            row.run(column);
             row.seconds[column] =
               std::min(row.seconds[column], timer.wall_time());
           }
 
-    // What a pass must read and write at least: blocks and column numbers, row
-    // starts and inverse diagonals, right hand side, and the vector twice.
-    const double bytes =
-      A.n_blocks() * (dim * dim * sizeof(double) + sizeof(unsigned int)) +
-      n * (sizeof(std::size_t) + (dim * dim + 3 * dim) * sizeof(double));
     const double triad = triad_bandwidth(), peak = peak_arithmetic();
     std::printf("scene %s, %u dofs, %.1f blocks per row, %.0f MB\n",
                 parameters.name.c_str(),
                 dim * n,
                 1. * A.n_blocks() / n,
-                1e-6 * bytes);
+                1e-6 * bytes_of_sweep);
     std::printf(
       "triad %.1f GB/s, arithmetic %.1f Gflop/s\n", 1e-9 * triad, 1e-9 * peak);
     std::printf(
@@ -255,20 +319,19 @@ namespace benchmark_sweeps
       " | of triad  of peak\n");
     for (const Row &row : rows)
       {
-        const unsigned int n_sweeps = row.sweeps.number + row.with_residual;
-        std::printf("%u %-26s |", row.sweeps.number, row.name);
+        std::printf("%-28s |", row.name.c_str());
         for (const double seconds : row.seconds)
-          std::printf(" %6.1f ", 1e9 * seconds / n_sweeps / n);
+          std::printf(" %6.1f ", 1e9 * seconds / row.n_passes / n);
         for (unsigned int column = n_columns; column < 3; ++column)
           std::printf("      - ");
         const double best = row.seconds.back();
         std::printf("| %6.2f  | %6.0f%% %7.0f%%\n",
                     row.seconds.front() / best,
-                    100. * bytes / best / triad,
-                    100. * 2. * n_sweeps * (A.n_blocks() + n) * dim * dim /
-                      best / peak);
+                    100. * row.bytes / best / triad,
+                    100. * 2. * row.n_blocks * dim * dim / best / peak);
       }
     std::printf("\n");
+    AssertThrow(energy >= 0., ExcMessage("The matrix is not positive."));
   }
 } // namespace benchmark_sweeps
 

@@ -178,6 +178,8 @@ namespace test_local_problem_3d
   {
     Random       random(1);
     double       worst = 0, worst_diagonal = 0, worst_uzawa = 0;
+    double       worst_guessed = 0;
+    unsigned int most_guessed = 0, most_from_solution = 0, n_critical = 0;
     unsigned int most = 0, n_capped = 0, n_slip = 0, n_tiny = 0;
     bool         same_at_cap = true;
     for (unsigned int i = 0; i < 100000; ++i)
@@ -188,11 +190,38 @@ namespace test_local_problem_3d
 
         unsigned int  n_iterations;
         const Vector2 v =
-          problem.solve_secular_equation(d.b, d.s, &n_iterations);
+          problem.solve_secular_equation(d.b, d.s, {{}}, &n_iterations);
         most  = std::max(most, n_iterations);
         worst = worse(worst, d.violation(v) / d.scale(v));
         n_slip += (norm(v) > 0);
         n_tiny += (norm(d.b) < d.s * (1 + 1e-10) && norm(v) > 0);
+
+        // From any guess: the solution, one close to it, one anywhere; and
+        // where the equation for 1/t has a minimum instead of a solution, which
+        // a step does not leave: (r-d) + d (1-u^3) = 0.
+        const double turn            = power_of_ten(-16., 0., random);
+        const double a_1             = std::max(d.A[0], d.A[3]),
+                     a_2             = std::min(d.A[0], d.A[3]);
+        const bool   first_is_larger = d.A[0] >= d.A[3];
+        const double u               = std::cbrt(
+          a_1 * std::abs(d.b[first_is_larger ? 1 : 0]) / ((a_1 - a_2) * d.s));
+        const double  c = u < 1. ? std::sqrt(1. / (u * u) - 1.) : 1.;
+        const Vector2 critical =
+          first_is_larger ? Vector2{{c, 1.}} : Vector2{{1., c}};
+        n_critical += (diagonal && u < 1. && c < 1.);
+        for (const Vector2 &guess :
+             {v,
+              Vector2{{v[0] - turn * v[1], v[1] + turn * v[0]}},
+              Vector2{{power_of_ten(-10., 10., random), random(-1., 1.)}},
+              diagonal ? critical : Vector2{}})
+          {
+            const Vector2 w =
+              problem.solve_secular_equation(d.b, d.s, guess, &n_iterations);
+            worst_guessed = worse(worst_guessed, d.violation(w) / d.scale(w));
+            most_guessed  = std::max(most_guessed, n_iterations);
+            if (guess == v)
+              most_from_solution = std::max(most_from_solution, n_iterations);
+          }
 
         // Without rounding of the axes, each component is accurate.
         if (diagonal)
@@ -211,6 +240,10 @@ namespace test_local_problem_3d
     check_below(worst, 2e-15, "the inclusion, 100000 random slip problems");
     check_below(worst_diagonal, 2e-15, "component by component on the axes");
     check_below(most, 4, "number of iterations");
+    check(n_critical > 1000, "many guesses where a step stays");
+    check_below(worst_guessed, 2e-15, "the inclusion, from any guess");
+    check_below(most_guessed, 5, "number of iterations from any guess");
+    check_below(most_from_solution, 2, "and from the solution");
     check_below(worst_uzawa, 2e-12, "the inclusion by Uzawa's method");
     check(same_at_cap && n_capped > 100 && n_capped < 9000,
           "Uzawa's method, or the secular equation if that is too slow");
@@ -795,7 +828,8 @@ namespace test_local_problem_3d
           damped_newton(d, {{ray * d.b[0], ray * d.b[1]}});
 
         unsigned int  n_secular, n_uzawa;
-        const Vector2 v = problem.solve_secular_equation(d.b, d.s, &n_secular);
+        const Vector2 v =
+          problem.solve_secular_equation(d.b, d.s, {{}}, &n_secular);
         const Vector2 w = problem.solve_uzawa(d.b, d.s, &n_uzawa);
         worst           = worse(worst, distance(v, exact) / norm(exact));
         worst_uzawa     = worse(worst_uzawa, distance(w, exact) / norm(exact));

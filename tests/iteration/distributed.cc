@@ -260,6 +260,18 @@ namespace test_distributed
       }
     report(missing, 0., "rows of the stiffness matrix have the same pattern");
     report(difference, 1e-13, "and the same values");
+
+    VectorType v(d.constraints().partitioner()), Av(v);
+    for (unsigned int i = 0; i < d.constraints().n_owned_nodes(); ++i)
+      for (unsigned int c = 0; c < dim; ++c)
+        v.local_element(dim * i + c) =
+          random_at(all.points[i], 17 + c).operator()(-1., 1.);
+    d.stiffness().vmult(Av, v);
+    const double product =
+      sum_over_processes(d.stiffness().energy_product(v), MPI_COMM_WORLD);
+    report(std::abs(product / (v * Av) - 1.),
+           1e-12,
+           "half of the matrix is enough for an energy product");
   }
 
 

@@ -102,7 +102,8 @@ namespace test_row_kernels
     const std::vector<double> b     = random_vector(dim * n, random),
                               start = random_vector(dim * n, random);
 
-    double product_error = 0, residual_error = 0, sweep_error = 0;
+    double energy_error = 0, product_error = 0, residual_error = 0,
+           sweep_error = 0;
     for (const auto instructions : available_instructions())
       {
         instructions_in_use = instructions;
@@ -123,6 +124,32 @@ namespace test_row_kernels
           }
         product_error =
           std::max(product_error, relative_difference(expected, Ax));
+        // All rows, or the first half, as if the others were of another
+        // process.
+        for (const unsigned int m : {n, n / 2})
+          {
+            double energy = 0., all = 0.;
+            for (unsigned int i = 0; i < m; ++i)
+              for (std::size_t e = A.row_begin(i); e < A.row_end(i); ++e)
+                for (unsigned int c = 0; c < dim; ++c)
+                  for (unsigned int q = 0; q < dim; ++q)
+                    {
+                      const unsigned int j    = A.column(e);
+                      const double       term = start[dim * i + q] *
+                        A.block(e)[c * dim + q] * start[dim * j + c];
+                      energy += (j < i                ? 0.
+                                   : j == i || j >= m ? 1.
+                                                      : 2.) *
+                        term;
+                      all += std::abs(term);
+                    }
+            energy_error =
+              std::max(energy_error,
+                       std::abs(energy -
+                                RowKernels::energy<dim>(
+                                  A.rows(), {0, m}, m, start.data())) /
+                         all);
+          }
         A.residual(r.data(), b.data(), start.data());
         for (unsigned int i = 0; i < dim * n; ++i)
           expected[i] = b[i] - expected[i];
@@ -159,6 +186,7 @@ namespace test_row_kernels
           }
       }
     check_below(product_error, 1e-13, "products");
+    check_below(energy_error, 1e-13, "energies of half the matrix");
     check_below(residual_error, 1e-13, "residuals");
     check_below(sweep_error, 1e-13, "sweeps, and residuals after them");
   }
@@ -174,7 +202,18 @@ namespace test_row_kernels
     const RandomProblem<dim> problem(
       block_parameters<dim>(FrictionLaw::none, 0.), 3, .3, random);
     check(problem.n_hanging() > 0, "there are such");
-    test(problem.matrix(), {{0, problem.matrix().n_rows()}}, random);
+    const NodeBlockMatrix<dim> &A = problem.matrix();
+    test(A, {{0, A.n_rows()}}, random);
+
+    const std::vector<double> x = random_vector(dim * A.n_rows(), random);
+    std::vector<double>       Ax(x);
+    A.vmult(Ax.data(), x.data());
+    double xAx = 0.;
+    for (unsigned int i = 0; i < x.size(); ++i)
+      xAx += x[i] * Ax[i];
+    check_below(std::abs(A.energy_product(x.data()) / xAx - 1.),
+                1e-13,
+                "half of a symmetric matrix is enough");
   }
 
 
