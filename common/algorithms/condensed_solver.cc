@@ -193,19 +193,16 @@ namespace Friction
   CondensedSolver<dim>::gather_nodes(
     const std::vector<Point<dim>> &own_positions)
   {
-    const MPI_Comm                     comm        = problem.communicator();
-    const NodalConstraints<dim>       &constraints = problem.constraints;
-    const unsigned int                 n = constraints.n_owned_nodes();
-    std::vector<std::array<double, 3>> places(n);
-    std::vector<char>                  held(dim * n);
+    const MPI_Comm               comm        = problem.communicator();
+    const NodalConstraints<dim> &constraints = problem.constraints;
+    const unsigned int           n           = constraints.n_owned_nodes();
+    Places                       places(n);
+    std::vector<char>            held(dim * n);
     for (unsigned int i = 0; i < n; ++i)
       {
-        places[i].fill(0.);
+        places[i] = place_of(own_positions[i]);
         for (unsigned int d = 0; d < dim; ++d)
-          {
-            places[i][d]      = own_positions[i][d];
-            held[dim * i + d] = constraints.is_prescribed(i, d);
-          }
+          held[dim * i + d] = constraints.is_prescribed(i, d);
       }
     positions = gather_from_all(places, comm);
     is_held   = gather_from_all(held, comm);

@@ -6,10 +6,10 @@
 #include <common/discretization/discrete_problem.h>
 #include <common/nodes/condensation.h>
 #include <common/nodes/elimination_tree.h>
+#include <common/nodes/places.h>
 
 #include <deal.II/base/point.h>
 
-#include <array>
 #include <memory>
 #include <vector>
 
@@ -114,8 +114,8 @@ namespace Friction
     const NodeBlockMatrix<dim> *matrix;
 
     // Of all nodes: those that take no part hang or are held altogether.
-    std::vector<std::array<double, 3>> positions;
-    std::vector<char>                  is_held, is_absent;
+    Places            positions;
+    std::vector<char> is_held, is_absent;
 
     // Nodes in the zone are kept.
     std::unique_ptr<ContactZone<dim>>  zone;

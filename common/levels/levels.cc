@@ -1,7 +1,7 @@
 #include <common/levels/aggregate_levels.h>
 #include <common/levels/levels.h>
+#include <common/nodes/places.h>
 
-#include <array>
 #include <utility>
 
 namespace Friction
@@ -22,26 +22,14 @@ namespace Friction
 
 
     template <int dim>
-    std::array<double, 3>
-    coordinates_of(const Point<dim> &point)
-    {
-      std::array<double, 3> result = {{0., 0., 0.}};
-      for (unsigned int d = 0; d < dim; ++d)
-        result[d] = point[d];
-      return result;
-    }
-
-
-
-    template <int dim>
-    std::vector<std::array<double, 3>>
+    Places
     leaf_positions(const DoFHandler<dim>      &dof_handler,
                    const DiscreteProblem<dim> &problem)
     {
-      std::vector<std::array<double, 3>> result;
+      Places result;
       for (const Point<dim> &point :
            node_positions(dof_handler, problem.constraints))
-        result.push_back(coordinates_of(point));
+        result.push_back(place_of(point));
       return result;
     }
 
@@ -49,19 +37,19 @@ namespace Friction
 
     // Of the owned nodes of level k.
     template <int dim>
-    std::vector<std::array<double, 3>>
+    Places
     level_positions(const DoFHandler<dim>  &dof_handler,
                     const NodeDistribution &owned,
                     const unsigned int      k)
     {
-      std::vector<std::array<double, 3>> result(owned.n_owned());
+      Places result(owned.n_owned());
       for (const auto &cell : dof_handler.mg_cell_iterators_on_level(k))
         if (cell->is_locally_owned_on_level())
           for (const unsigned int v : cell->vertex_indices())
             {
               const GlobalNode node = cell->mg_vertex_dof_index(k, v, 0) / dim;
               if (owned.is_owned(node))
-                result[owned.local(node)] = coordinates_of(cell->vertex(v));
+                result[owned.local(node)] = place_of(cell->vertex(v));
             }
       return result;
     }

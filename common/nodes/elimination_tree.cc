@@ -16,11 +16,10 @@ namespace Friction
 
 
 
-  EliminationTree::EliminationTree(
-    const NodePattern                        &pattern,
-    const std::vector<std::array<double, 3>> &positions,
-    const std::vector<char>                  &is_kept,
-    const std::vector<char>                  &is_absent)
+  EliminationTree::EliminationTree(const NodePattern       &pattern,
+                                   const Places            &positions,
+                                   const std::vector<char> &is_kept,
+                                   const std::vector<char> &is_absent)
     : pattern(pattern)
     , positions(positions)
     , part(pattern.n_rows(), nowhere)

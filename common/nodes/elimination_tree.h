@@ -2,8 +2,8 @@
 #define friction_nodes_elimination_tree_h
 
 #include <common/nodes/node_block_matrix.h>
+#include <common/nodes/places.h>
 
-#include <array>
 #include <vector>
 
 namespace Friction
@@ -43,10 +43,10 @@ namespace Friction
      * @param is_absent  nodes that take no part: they are held, or have no
      *                   couplings.
      */
-    EliminationTree(const NodePattern                        &pattern,
-                    const std::vector<std::array<double, 3>> &positions,
-                    const std::vector<char>                  &is_kept,
-                    const std::vector<char>                  &is_absent);
+    EliminationTree(const NodePattern       &pattern,
+                    const Places            &positions,
+                    const std::vector<char> &is_kept,
+                    const std::vector<char> &is_absent);
 
     /** In the order of elimination, children before parents. The last one is
      * that of the nodes that are kept; it has no border. */
@@ -61,9 +61,9 @@ namespace Friction
     double cost(const unsigned int n_components) const;
 
   private:
-    const NodePattern                        &pattern;
-    const std::vector<std::array<double, 3>> &positions;
-    std::vector<Front>                        all_fronts;
+    const NodePattern &pattern;
+    const Places      &positions;
+    std::vector<Front> all_fronts;
 
     // Which part of the body a node belongs to, while that is divided.
     std::vector<unsigned int> part;

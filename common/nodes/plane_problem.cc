@@ -4,6 +4,8 @@
 
 #include <deal.II/base/exceptions.h>
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <utility>
 
@@ -216,21 +218,11 @@ namespace Friction
       y.insert(
         y.end(), values.begin() + dim * i, values.begin() + dim * (i + 1));
     project(y.data());
-    const unsigned int n = y.size();
-    for (unsigned int k = 0; k < n; ++k)
-      {
-        const double *column = dense_factor.data() + k * n;
-        y[k] /= column[k];
-        for (unsigned int i = k + 1; i < n; ++i)
-          y[i] -= column[i] * y[k];
-      }
-    for (unsigned int k = n; k-- > 0;)
-      {
-        const double *column = dense_factor.data() + k * n;
-        for (unsigned int i = k + 1; i < n; ++i)
-          y[k] -= column[i] * y[i];
-        y[k] /= column[k];
-      }
+    const Eigen::Map<const Eigen::MatrixXd> L(
+      dense_factor.data(), y.size(), y.size());
+    Eigen::Map<Eigen::VectorXd> x(y.data(), y.size());
+    L.triangularView<Eigen::Lower>().solveInPlace(x);
+    L.transpose().triangularView<Eigen::Upper>().solveInPlace(x);
     project(y.data());
     for (unsigned int a = 0; a < last.size(); ++a)
       std::copy_n(y.data() + dim * a, dim, values.begin() + dim * last[a]);

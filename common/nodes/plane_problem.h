@@ -4,6 +4,7 @@
 #include <common/nodes/condensation.h>
 #include <common/nodes/elimination_tree.h>
 #include <common/nodes/node_block_matrix.h>
+#include <common/nodes/places.h>
 #include <common/nodes/truncation.h>
 
 #include <array>
@@ -29,7 +30,7 @@ namespace Friction
     struct Node
     {
       unsigned int          number; ///< of its row
-      std::array<double, 3> position;
+      Place                 position;
       std::array<bool, dim> is_held; ///< components that keep their values
       bool                  may_be_truncated; ///< and so is eliminated last
     };
@@ -87,7 +88,7 @@ namespace Friction
 
   private:
     std::vector<unsigned int>          numbers;
-    std::vector<std::array<double, 3>> positions;
+    Places                             positions;
     std::vector<char>                  is_held; // of each degree of freedom
     std::vector<double>                traces;  // of diagonal blocks at first
     std::shared_ptr<const NodePattern> pattern;

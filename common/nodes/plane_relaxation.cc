@@ -70,10 +70,9 @@ namespace Friction
 
   template <int dim>
   void
-  PlaneRelaxation<dim>::find_planes(
-    const RelaxedNodes                       &nodes,
-    const std::vector<char>                  &is_relaxed,
-    const std::vector<std::array<double, 3>> &positions)
+  PlaneRelaxation<dim>::find_planes(const RelaxedNodes      &nodes,
+                                    const std::vector<char> &is_relaxed,
+                                    const Places            &positions)
   {
     std::vector<char> is_truncated(A->n_rows());
     for (const unsigned int i : nodes.truncated)
@@ -97,10 +96,10 @@ namespace Friction
   template <int dim>
   std::vector<typename PlaneProblem<dim>::Node>
   PlaneRelaxation<dim>::nodes_of_problem(
-    const RelaxedNodes                       &nodes,
-    const std::vector<std::array<double, 3>> &positions,
-    const std::vector<char>                  &is_truncated,
-    const std::vector<unsigned int>          &plane) const
+    const RelaxedNodes              &nodes,
+    const Places                    &positions,
+    const std::vector<char>         &is_truncated,
+    const std::vector<unsigned int> &plane) const
   {
     const std::size_t n_truncated =
       std::count_if(plane.begin(), plane.end(), [&](const unsigned int i) {

@@ -1,13 +1,13 @@
 #ifndef friction_nodes_plane_relaxation_h
 #define friction_nodes_plane_relaxation_h
 
+#include <common/nodes/places.h>
 #include <common/nodes/plane_problem.h>
 #include <common/nodes/sweep_schedule.h>
 #include <common/parallel/ghost_exchange.h>
 
 #include <mpi.h>
 
-#include <array>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -30,7 +30,7 @@ namespace Friction
 
     /// Where the nodes are, asked for only if that matters; in two dimensions
     /// the third coordinate is zero.
-    std::function<std::vector<std::array<double, 3>>()> positions;
+    std::function<Places()> positions;
   };
 
 
@@ -115,15 +115,15 @@ namespace Friction
 
     mutable std::vector<double> values;
 
-    void find_planes(const RelaxedNodes                       &nodes,
-                     const std::vector<char>                  &is_relaxed,
-                     const std::vector<std::array<double, 3>> &positions);
+    void find_planes(const RelaxedNodes      &nodes,
+                     const std::vector<char> &is_relaxed,
+                     const Places            &positions);
 
     std::vector<typename Problem::Node>
-    nodes_of_problem(const RelaxedNodes                       &nodes,
-                     const std::vector<std::array<double, 3>> &positions,
-                     const std::vector<char>                  &is_truncated,
-                     const std::vector<unsigned int>          &plane) const;
+    nodes_of_problem(const RelaxedNodes              &nodes,
+                     const Places                    &positions,
+                     const std::vector<char>         &is_truncated,
+                     const std::vector<unsigned int> &plane) const;
   };
 } // namespace Friction
 

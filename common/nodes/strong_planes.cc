@@ -43,8 +43,7 @@ namespace Friction
 
 
     Eigen::Vector3d
-    unit_direction(const std::array<double, 3> &from,
-                   const std::array<double, 3> &to)
+    unit_direction(const Place &from, const Place &to)
     {
       return Eigen::Vector3d(to[0] - from[0], to[1] - from[1], to[2] - from[2])
         .normalized();
@@ -101,11 +100,11 @@ namespace Friction
     // this plane.
     template <int dim, typename IsStrong>
     bool
-    find_normal(const NodeBlockMatrix<dim>               &A,
-                const unsigned int                        row,
-                const IsStrong                           &is_strong,
-                const std::vector<std::array<double, 3>> &positions,
-                Eigen::Vector3d                          &normal)
+    find_normal(const NodeBlockMatrix<dim> &A,
+                const unsigned int          row,
+                const IsStrong             &is_strong,
+                const Places               &positions,
+                Eigen::Vector3d            &normal)
     {
       const auto direction = [&](const std::size_t e) {
         return unit_direction(positions[row], positions[A.column(e)]);
@@ -136,10 +135,10 @@ namespace Friction
     // The same if only this node is asked which of its couplings are strong.
     template <int dim>
     bool
-    find_normal(const NodeBlockMatrix<dim>               &A,
-                const unsigned int                        row,
-                const std::vector<std::array<double, 3>> &positions,
-                Eigen::Vector3d                          &normal)
+    find_normal(const NodeBlockMatrix<dim> &A,
+                const unsigned int          row,
+                const Places               &positions,
+                Eigen::Vector3d            &normal)
     {
       const double weakest   = weakest_of(A, row);
       const auto   is_strong = [&](const std::size_t e) {
@@ -166,9 +165,9 @@ namespace Friction
 
   template <int dim>
   bool
-  may_be_in_plane(const NodeBlockMatrix<dim>               &A,
-                  const unsigned int                        row,
-                  const std::vector<std::array<double, 3>> &positions)
+  may_be_in_plane(const NodeBlockMatrix<dim> &A,
+                  const unsigned int          row,
+                  const Places               &positions)
   {
     Eigen::Vector3d normal;
     if (!find_normal(A, row, positions, normal))
@@ -190,9 +189,9 @@ namespace Friction
 
   template <int dim>
   std::vector<std::vector<unsigned int>>
-  strong_planes(const NodeBlockMatrix<dim>               &A,
-                const std::vector<char>                  &is_relaxed,
-                const std::vector<std::array<double, 3>> &positions)
+  strong_planes(const NodeBlockMatrix<dim> &A,
+                const std::vector<char>    &is_relaxed,
+                const Places               &positions)
   {
     const unsigned int  n = A.n_rows();
     std::vector<double> weakest(n);
@@ -247,20 +246,16 @@ namespace Friction
 
 
 
-  template std::vector<std::vector<unsigned int>>
-  strong_planes(const NodeBlockMatrix<2> &,
-                const std::vector<char> &,
-                const std::vector<std::array<double, 3>> &);
-  template std::vector<std::vector<unsigned int>>
-                strong_planes(const NodeBlockMatrix<3> &,
-                              const std::vector<char> &,
-                              const std::vector<std::array<double, 3>> &);
+  template std::vector<std::vector<unsigned int>> strong_planes(
+    const NodeBlockMatrix<2> &, const std::vector<char> &, const Places &);
+  template std::vector<std::vector<unsigned int>> strong_planes(
+    const NodeBlockMatrix<3> &, const std::vector<char> &, const Places &);
   template bool may_be_in_plane(const NodeBlockMatrix<2> &, const unsigned int);
   template bool may_be_in_plane(const NodeBlockMatrix<3> &, const unsigned int);
   template bool may_be_in_plane(const NodeBlockMatrix<2> &,
                                 const unsigned int,
-                                const std::vector<std::array<double, 3>> &);
+                                const Places &);
   template bool may_be_in_plane(const NodeBlockMatrix<3> &,
                                 const unsigned int,
-                                const std::vector<std::array<double, 3>> &);
+                                const Places &);
 } // namespace Friction

@@ -2,8 +2,8 @@
 #define friction_nodes_strong_planes_h
 
 #include <common/nodes/node_block_matrix.h>
+#include <common/nodes/places.h>
 
-#include <array>
 #include <vector>
 
 namespace Friction
@@ -45,9 +45,9 @@ namespace Friction
    */
   template <int dim>
   std::vector<std::vector<unsigned int>>
-  strong_planes(const NodeBlockMatrix<dim>               &A,
-                const std::vector<char>                  &is_relaxed,
-                const std::vector<std::array<double, 3>> &positions);
+  strong_planes(const NodeBlockMatrix<dim> &A,
+                const std::vector<char>    &is_relaxed,
+                const Places               &positions);
 
   /** A quick look at a single row, without positions: a node in a plane says
    * yes if it is not at an end of the body, and so do nodes of flat cells. With
@@ -61,9 +61,9 @@ namespace Friction
    * strong than itself, as where cells get smaller, may be in a plane though it
    * says no: this is for samples. */
   template <int dim>
-  bool may_be_in_plane(const NodeBlockMatrix<dim>               &A,
-                       const unsigned int                        row,
-                       const std::vector<std::array<double, 3>> &positions);
+  bool may_be_in_plane(const NodeBlockMatrix<dim> &A,
+                       const unsigned int          row,
+                       const Places               &positions);
 } // namespace Friction
 
 #endif

@@ -39,19 +39,18 @@ namespace benchmark_elimination
        "Refinement/Levels=0",
        "Refinement/Maximum dofs=10000000"}));
     nest.begin();
-    const Discretization<dim>         &d      = nest.discretization();
-    const NodeBlockMatrix<dim>        &A      = d.stiffness().blocks();
-    const std::vector<Point<dim>>      points = node_points(d);
-    std::vector<std::array<double, 3>> positions(A.n_rows());
+    const Discretization<dim>    &d      = nest.discretization();
+    const NodeBlockMatrix<dim>   &A      = d.stiffness().blocks();
+    const std::vector<Point<dim>> points = node_points(d);
+    Places                        positions(A.n_rows());
     std::vector<char> is_held(dim * A.n_rows()), is_kept(A.n_rows(), 0),
       is_absent(A.n_rows());
     for (unsigned int i = 0; i < A.n_rows(); ++i)
       {
         is_absent[i] = true;
-        positions[i].fill(0.);
+        positions[i] = place_of(points[i]);
         for (unsigned int c = 0; c < dim; ++c)
           {
-            positions[i][c]      = points[i][c];
             is_held[dim * i + c] = d.constraints().is_prescribed(i, c);
             is_absent[i]         = is_absent[i] && is_held[dim * i + c];
           }

@@ -48,8 +48,8 @@ namespace test_condensation
           is_kept[p.node] = 1;
     }
 
-    std::vector<char>                  is_held, is_kept, is_absent;
-    std::vector<std::array<double, 3>> positions;
+    std::vector<char> is_held, is_kept, is_absent;
+    Places            positions;
   };
 
 
@@ -238,9 +238,9 @@ namespace test_condensation
         const NodeBlockMatrix<2> &A = d.stiffness().blocks();
         const std::vector<char>   no_node(A.n_rows(), 0),
           no_value(2 * A.n_rows(), 0);
-        std::vector<std::array<double, 3>> positions;
+        Places positions;
         for (const Point<2> &point : node_points<2>(d))
-          positions.push_back({{point[0], point[1], 0.}});
+          positions.push_back(place_of(point));
         const EliminationTree tree(A.sparsity(), positions, no_node, no_node);
         n_factorised += Condensation<2>(tree, no_value).factorize(A);
       }

@@ -99,9 +99,9 @@ namespace test_plane_relaxation
     for (const ContactNode<dim> &p : d.contact())
       nodes.truncated.push_back(p.node);
     nodes.positions = [&d]() {
-      std::vector<std::array<double, 3>> positions;
+      Places positions;
       for (const Point<dim> &point : node_points(d))
-        positions.push_back({{point[0], point[1], point[2]}});
+        positions.push_back(place_of(point));
       positions.resize(d.constraints().n_owned_nodes());
       return positions;
     };
