@@ -21,14 +21,14 @@ namespace Friction
                                                      "records",
                                                      "fields"};
 
-    using Place = std::shared_ptr<RunClock *>;
+    using PlaceOfClock = std::shared_ptr<RunClock *>;
 
-    // A communicator has a Place of its own, which goes with it.
+    // A communicator has a PlaceOfClock of its own, which goes with it.
     int
     copy_place(MPI_Comm, int, void *, void *place, void *new_place, int *flag)
     {
       *static_cast<void **>(new_place) =
-        new Place(*static_cast<Place *>(place));
+        new PlaceOfClock(*static_cast<PlaceOfClock *>(place));
       *flag = 1;
       return MPI_SUCCESS;
     }
@@ -36,7 +36,7 @@ namespace Friction
     int
     delete_place(MPI_Comm, int, void *place, void *)
     {
-      delete static_cast<Place *>(place);
+      delete static_cast<PlaceOfClock *>(place);
       return MPI_SUCCESS;
     }
 
@@ -73,7 +73,7 @@ namespace Friction
   void
   RunClock::attach(const MPI_Comm communicator)
   {
-    MPI_Comm_set_attr(communicator, clock_key(), new Place(place));
+    MPI_Comm_set_attr(communicator, clock_key(), new PlaceOfClock(place));
   }
 
 
@@ -84,7 +84,7 @@ namespace Friction
     void *place = nullptr;
     int   found = 0;
     MPI_Comm_get_attr(communicator, clock_key(), &place, &found);
-    return found ? **static_cast<Place *>(place) : nullptr;
+    return found ? **static_cast<PlaceOfClock *>(place) : nullptr;
   }
 
 
