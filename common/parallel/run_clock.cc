@@ -23,7 +23,7 @@ namespace Friction
 
     using PlaceOfClock = std::shared_ptr<RunClock *>;
 
-    // A communicator has a PlaceOfClock of its own, which goes with it.
+    // A communicator has a place of its own, which goes with it.
     int
     copy_place(MPI_Comm, int, void *, void *place, void *new_place, int *flag)
     {
