@@ -247,16 +247,15 @@ namespace Friction
     double length = 1.;
     if (admissible < 1.)
       {
-        VectorType part(levels.vector(0)), image(part);
+        VectorType part(levels.vector(0));
         const auto lowers_energy = [&]() {
           for (unsigned int i = 0; i < n_values; ++i)
             part.local_element(i) = clamp(i, length) - c[i];
           levels.coupled_ghosts(0).update(part.begin(), dim);
-          levels.matrices().matrix(0).vmult(image.begin(), part.begin());
-          double gain = 0;
+          double gain =
+            -.5 * levels.matrices().matrix(0).energy_product(part.begin());
           for (unsigned int i = 0; i < n_values; ++i)
-            gain +=
-              part.local_element(i) * (r[i] - .5 * image.local_element(i));
+            gain += r[i] * part.local_element(i);
           return sum_over_processes(gain, comm) > 0;
         };
         while (length > std::max(admissible, .01) && !lowers_energy())

@@ -180,7 +180,7 @@ namespace Friction
     double
     energy_product(const double *x) const
     {
-      return RowKernels::energy<dim>(rows(), {0, n_rows()}, n_rows(), x);
+      return RowKernels::energy<dim>(rows(), n_rows(), x);
     }
 
     /** r = b - A x. */

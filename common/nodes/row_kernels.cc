@@ -259,16 +259,15 @@ namespace Friction
       template <int dim, typename Four>
       inline DEAL_II_ALWAYS_INLINE double
       energy_body(const BlockRows<dim> &matrix,
-                  const RowRange       &rows,
                   const unsigned int    n_rows,
                   const double         *x)
       {
         constexpr unsigned int size = dim * dim, ahead = 4;
         const BlockRows<dim>   A   = matrix;
         double                 sum = 0.;
-        for (unsigned int i = rows.first; i < rows.second; ++i)
+        for (unsigned int i = 0; i < n_rows; ++i)
           {
-            if (i + ahead < rows.second)
+            if (i + ahead < n_rows)
               {
                 const std::size_t   next  = A.starts[i + ahead];
                 const std::size_t   n     = A.starts[i + ahead + 1] - next;
@@ -409,11 +408,10 @@ namespace Friction
       template <int dim>
       FRICTION_AVX2 double
       energy_avx2(const BlockRows<dim> &A,
-                  const RowRange       &rows,
                   const unsigned int    n_rows,
                   const double         *x)
       {
-        return energy_body<dim, OneQuad>(A, rows, n_rows, x);
+        return energy_body<dim, OneQuad>(A, n_rows, x);
       }
 
       template <int dim>
@@ -472,16 +470,13 @@ namespace Friction
 
     template <int dim>
     double
-    energy(const BlockRows<dim> &A,
-           const RowRange       &rows,
-           const unsigned int    n_rows,
-           const double         *x)
+    energy(const BlockRows<dim> &A, const unsigned int n_rows, const double *x)
     {
 #ifdef FRICTION_AVX2
       if (instructions_in_use == Instructions::avx2)
-        return energy_avx2<dim>(A, rows, n_rows, x);
+        return energy_avx2<dim>(A, n_rows, x);
 #endif
-      return energy_body<dim, TwoPairs>(A, rows, n_rows, x);
+      return energy_body<dim, TwoPairs>(A, n_rows, x);
     }
 
 
@@ -515,10 +510,8 @@ namespace Friction
                               double *,
                               const double *,
                               const double *);
-    template double       energy<2>(const BlockRows<2> &,
-                              const RowRange &,
-                              const unsigned int,
-                              const double *);
+    template double
+    energy<2>(const BlockRows<2> &, const unsigned int, const double *);
     template void         relax<2>(const BlockRows<2> &,
                            const NodeBlock<2> *,
                            const RowLoop &,
@@ -533,11 +526,9 @@ namespace Friction
                               double *,
                               const double *,
                               const double *);
-    template double       energy<3>(const BlockRows<3> &,
-                              const RowRange &,
-                              const unsigned int,
-                              const double *);
-    template void         relax<3>(const BlockRows<3> &,
+    template double
+    energy<3>(const BlockRows<3> &, const unsigned int, const double *);
+    template void relax<3>(const BlockRows<3> &,
                            const NodeBlock<3> *,
                            const RowLoop &,
                            const double *,

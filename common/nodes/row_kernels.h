@@ -95,17 +95,15 @@ namespace Friction
                   const double         *x);
 
     /**
-     * What some rows of a symmetric matrix have in $x^TAx$: their diagonal
-     * blocks once, their couplings to rows with larger numbers twice, and those
-     * to columns from @p n_rows on, the rows of other processes, once. For all
-     * @p n_rows rows, and over all processes, this is the whole product, and
-     * only half of the matrix has been read.
+     * What the first @p n_rows rows of a symmetric matrix have in $x^TAx$:
+     * their diagonal blocks once, their couplings to rows with larger numbers
+     * twice, and those to columns from @p n_rows on, the rows of other
+     * processes, once. Over all processes this is the whole product, and only
+     * half of the matrix has been read.
      */
     template <int dim>
-    double energy(const BlockRows<dim> &A,
-                  const RowRange       &rows,
-                  const unsigned int    n_rows,
-                  const double         *x);
+    double
+    energy(const BlockRows<dim> &A, const unsigned int n_rows, const double *x);
 
     /**
      * Gauss-Seidel for some rows: solves the equations of each row for the

@@ -24,6 +24,7 @@
 #include <tests/support/random.h>
 #include <tests/support/random_problem.h>
 #include <tests/support/test.h>
+#include <tests/support/truncated_values.h>
 
 using namespace Tests;
 
@@ -40,19 +41,6 @@ namespace test_line_relaxation
     if (stretched_direction < dim)
       p.scene.subdivisions[stretched_direction] = 20;
     return p;
-  }
-
-
-
-  template <int dim>
-  NodeRanges
-  movable_nodes(const Discretization<dim> &d)
-  {
-    NodeRanges nodes;
-    for (unsigned int i = 0; i < d.constraints().n_owned_nodes(); ++i)
-      if (!d.constraints().is_fixed(i))
-        append(nodes, i);
-    return nodes;
   }
 
 
@@ -138,27 +126,11 @@ namespace test_line_relaxation
     const Truncation<dim> truncation = random_truncation(d, random);
     relaxation.factorise(&truncation);
     const auto random_vector = [&]() {
-      VectorType v = d.vector();
-      for (unsigned int i = 0; i < v.locally_owned_size(); ++i)
-        v.local_element(i) =
-          d.constraints().is_fixed(i / dim) ? 0. : random(-1., 1.);
-      truncation.apply(v.begin());
-      return v;
+      return random_truncated(d, truncation, random);
     };
     // What the matrix is: T (A + w) x for truncated x.
     const auto apply = [&](const VectorType &x) {
-      VectorType y = d.vector();
-      d.stiffness().update_ghosts(x);
-      A.vmult(y.begin(), x.begin());
-      for (unsigned int i = 0; i < A.n_rows(); ++i)
-        {
-          const NodeValue<dim> more =
-            times<dim>(truncation.curvature(i).data(), x.begin() + dim * i);
-          for (unsigned int c = 0; c < dim; ++c)
-            y.local_element(dim * i + c) += more[c];
-        }
-      truncation.apply(y.begin());
-      return y;
+      return truncated_product(d, truncation, x);
     };
     const VectorType b      = random_vector();
     const auto       energy = [&](const VectorType &x) {
