@@ -172,7 +172,7 @@ namespace Friction
       gather_matrix();
     is_absent.resize(matrix->n_rows());
     for (unsigned int i = 0; i < is_absent.size(); ++i)
-      is_absent[i] = (matrix->row_begin(i) == matrix->row_end(i) ||
+      is_absent[i] = (matrix->is_empty(i) ||
                       std::all_of(is_held.begin() + dim * i,
                                   is_held.begin() + dim * (i + 1),
                                   [](const char held) { return held; }));
@@ -225,7 +225,8 @@ namespace Friction
         for (std::size_t e = own.row_begin(i); e < own.row_end(i); ++e)
           {
             columns.push_back(nodes.global(own.column(e)));
-            values.insert(values.end(), own.block(e), own.block(e) + dim * dim);
+            const NodeBlock<dim> block = own.value(i, e);
+            values.insert(values.end(), block.begin(), block.end());
           }
       }
     lengths = gather_from_all(lengths, comm);
@@ -245,9 +246,12 @@ namespace Friction
     std::size_t at = 0;
     for (unsigned int i = 0; i < lengths.size(); ++i)
       for (unsigned int k = 0; k < lengths[i]; ++k, ++at)
-        std::copy_n(values.begin() + dim * dim * at,
-                    dim * dim,
-                    gathered.block(gathered.find(i, columns[at])));
+        {
+          NodeBlock<dim> block;
+          std::copy_n(
+            values.begin() + dim * dim * at, dim * dim, block.begin());
+          gathered.set(i, gathered.find(i, columns[at]), block);
+        }
     matrix = &gathered;
   }
 
@@ -371,12 +375,13 @@ namespace Friction
           row[j] = j;
         pattern->append_row(row);
       }
+    if (stores_half<dim>)
+      pattern->store_half();
     NodeBlockMatrix<dim> S(pattern);
     for (unsigned int i = 0; i < kept.size(); ++i)
-      for (std::size_t e = S.row_begin(i); e < S.row_end(i); ++e)
+      for (std::size_t e = S.row_begin(i); e < S.stored_end(i); ++e)
         {
-          const NodeBlock<dim> block = condensation->block(i, S.column(e));
-          std::copy(block.begin(), block.end(), S.block(e));
+          S.set(i, e, condensation->block(i, S.column(e)));
         }
 
     auto small = std::make_unique<Small>(

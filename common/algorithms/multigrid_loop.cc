@@ -68,7 +68,7 @@ namespace Friction
     double                      sum = 0;
     for (unsigned int i = 0; i < A.n_rows(); ++i)
       if (A.row_begin(i) < A.row_end(i))
-        sum += trace<dim>(A.block(A.row_begin(i))) *
+        sum += trace<dim>(A.diagonal(i)) *
           dot<dim>(u.begin() + dim * i, u.begin() + dim * i);
     return std::max(1e-12 * sum_over_processes(sum, problem.communicator()),
                     1e-300);

@@ -65,7 +65,8 @@ namespace Friction
         NodeValue<dim> difference;
         for (unsigned int d = 0; d < dim; ++d)
           difference[d] = all[dim * A.column(e) + d] - own[d];
-        const NodeValue<dim> force = times<dim>(A.block(e), difference.data());
+        const NodeValue<dim> force =
+          times<dim>(A.value(node, e).data(), difference.data());
         sum += std::sqrt(dot<dim>(force.data(), force.data()));
       }
     return .5 * sum / problem.face_measures[node];

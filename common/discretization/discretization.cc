@@ -54,7 +54,9 @@ namespace Friction
     previous_displacement.reset();
     dofs.distribute_dofs(fe);
     dofs.distribute_mg_dofs();
-    renumber_nodes(dofs);
+    renumber_nodes(dofs, [&](const types::boundary_id id) {
+      return the_scene.contact_on(id) != nullptr;
+    });
     find_constraints();
     const RunScope part_of_contact(Compatibility::mpi_communicator(mesh),
                                    RunPart::contact);

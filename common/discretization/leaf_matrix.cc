@@ -20,18 +20,19 @@ namespace Friction
 
 
 
-    // Where the block of a column is that the row is known to have, by the
-    // order of NodePattern::is_before(). Half of all steps of a search go one
-    // way and half the other, which no processor can guess; this one has no
-    // jumps that depend on what it finds.
+    // Where the block of a column is that is known to be stored with the row,
+    // by the order of NodePattern::is_before(). Half of all steps of a search
+    // go one way and half the other, which no processor can guess; this one has
+    // no jumps that depend on what it finds.
+    template <int dim>
     inline std::size_t
-    position(const NodePattern &pattern,
-             const unsigned int row,
-             const unsigned int column)
+    position(const NodeBlockMatrix<dim> &rows,
+             const unsigned int          row,
+             const unsigned int          column)
     {
-      const unsigned int *const begin = pattern.columns.data();
-      const unsigned int       *it    = begin + pattern.starts[row];
-      std::size_t               n     = begin + pattern.starts[row + 1] - it;
+      const unsigned int *const begin = rows.sparsity().columns.data();
+      const unsigned int       *it    = begin + rows.row_begin(row);
+      std::size_t               n = rows.stored_end(row) - rows.row_begin(row);
       while (n > 1)
         {
           const std::size_t half = n / 2;
@@ -268,6 +269,8 @@ namespace Friction
         pattern->append_row(columns);
       }
     pattern->columns.shrink_to_fit();
+    if (stores_half<dim>)
+      pattern->store_half();
     owned_pattern = pattern;
 
     pattern = std::make_shared<NodePattern>();
@@ -317,19 +320,18 @@ namespace Friction
 
         const bool            is_owned = i.node < n_owned;
         NodeBlockMatrix<dim> &rows     = is_owned ? owned_rows : outgoing_rows;
-        const NodePattern    &pattern =
-          is_owned ? *owned_pattern : *outgoing_pattern;
-        const unsigned int row =
+        const unsigned int    row =
           is_owned ? i.node : outgoing_row_of_ghost[i.node - n_owned];
         for (const Share &j : shares)
           {
-            double *block = rows.block(position(pattern, row, j.node));
-            // Blocks are stored by columns, tensors by rows.
-            const Tensor<2, dim> &transposed = blocks(j.vertex, i.vertex);
-            const double          weight     = i.weight * j.weight;
-            for (unsigned int c = 0; c < dim; ++c)
-              for (unsigned int r = 0; r < dim; ++r)
-                block[c * dim + r] += weight * transposed[c][r];
+            if (stores_half<dim> && is_owned && j.node < i.node)
+              continue;
+            double *block = rows.block(row, position(rows, row, j.node));
+            const Tensor<2, dim> &values = blocks(i.vertex, j.vertex);
+            const double          weight = i.weight * j.weight;
+            for (unsigned int r = 0; r < dim; ++r)
+              for (unsigned int c = 0; c < dim; ++c)
+                block[r * dim + c] += weight * values[r][c];
           }
       }
   }
@@ -352,10 +354,10 @@ namespace Friction
           for (const Row &row : process.second)
             for (const GlobalNode column : row.columns)
               {
+                const unsigned int number =
+                  outgoing_row_of_ghost[row.row - n_owned];
                 const double *block = outgoing_rows.block(
-                  position(*outgoing_pattern,
-                           outgoing_row_of_ghost[row.row - n_owned],
-                           column));
+                  number, position(outgoing_rows, number, column));
                 messages[process.first].insert(
                   messages[process.first].end(), block, block + dim * dim);
               }
@@ -367,10 +369,14 @@ namespace Friction
             for (const Row &row : process.second)
               for (const GlobalNode column : row.columns)
                 {
-                  double *block =
-                    owned_rows.block(position(*owned_pattern, row.row, column));
-                  for (unsigned int e = 0; e < dim * dim; ++e)
-                    block[e] += *values++;
+                  if (!stores_half<dim> || column >= row.row)
+                    {
+                      double *block = owned_rows.block(
+                        row.row, position(owned_rows, row.row, column));
+                      for (unsigned int e = 0; e < dim * dim; ++e)
+                        block[e] += values[e];
+                    }
+                  values += dim * dim;
                 }
           }
       }

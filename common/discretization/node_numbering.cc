@@ -1,7 +1,11 @@
 #include <common/discretization/node_numbering.h>
+#include <common/nodes/sweep_schedule.h>
 
 #include <deal.II/base/index_set.h>
 
+#include <algorithm>
+#include <array>
+#include <limits>
 #include <vector>
 
 namespace Friction
@@ -110,12 +114,56 @@ namespace Friction
 
 
 
+    // By vertices: the levels of the coarsest and of the finest active cell
+    // around each.
+    template <int dim>
+    std::vector<std::array<int, 2>>
+    levels_around_vertices(const Triangulation<dim> &mesh)
+    {
+      std::vector<std::array<int, 2>> result(
+        mesh.n_vertices(), {{std::numeric_limits<int>::max(), -1}});
+      for (const auto &cell : mesh.active_cell_iterators())
+        if (!cell->is_artificial())
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              std::array<int, 2> &around = result[cell->vertex_index(v)];
+              around[0]                  = std::min(around[0], cell->level());
+              around[1]                  = std::max(around[1], cell->level());
+            }
+      return result;
+    }
+
+
+
+    // Among the degrees of freedom of a leaf mesh, the first one of each vertex
+    // on the contact boundary.
+    template <int dim>
+    std::vector<types::global_dof_index>
+    contact_dofs(
+      const DoFHandler<dim>                               &dof_handler,
+      const std::function<bool(const types::boundary_id)> &has_contact)
+    {
+      std::vector<types::global_dof_index> result;
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (!cell->is_artificial() && cell->at_boundary())
+          for (const unsigned int f : cell->face_indices())
+            if (cell->at_boundary(f) &&
+                has_contact(cell->face(f)->boundary_id()))
+              for (unsigned int v = 0; v < cell->face(f)->n_vertices(); ++v)
+                result.push_back(cell->face(f)->vertex_dof_index(v, 0));
+      return result;
+    }
+
+
+
     // The new numbers of the locally owned degrees of freedom, given the first
-    // degree of freedom of each vertex of each cell.
+    // degree of freedom of each vertex of each cell, and of each vertex that is
+    // to be the last of its chunk.
     template <int dim>
     std::vector<types::global_dof_index>
     new_numbers(const IndexSet                             &owned,
-                const std::vector<types::global_dof_index> &vertex_dofs)
+                const std::vector<types::global_dof_index> &vertex_dofs,
+                const std::vector<types::global_dof_index> &last_dofs)
     {
       // Cells with nodes of other processes repeat their first owned node in
       // place of the others. Their owned nodes are those at an interface to
@@ -163,8 +211,17 @@ namespace Friction
       for (unsigned int i = 0; i < n_nodes; ++i)
         if (at_interface[i])
           interface.push_back(i);
-      const std::vector<unsigned int> order =
+      std::vector<unsigned int> order =
         cuthill_mckee(Neighbours(n_nodes, kept, nodes_per_cell), interface);
+      std::vector<char> is_last(n_nodes, 0);
+      for (const types::global_dof_index dof : last_dofs)
+        if (own_node(dof) != elsewhere)
+          is_last[own_node(dof)] = 1;
+      for (unsigned int begin = 0; begin < n_nodes; begin += nodes_per_chunk)
+        std::stable_partition(
+          order.begin() + begin,
+          order.begin() + std::min(n_nodes, begin + nodes_per_chunk),
+          [&](const unsigned int node) { return !is_last[node]; });
       std::vector<types::global_dof_index> numbers(owned.n_elements());
       for (unsigned int i = 0; i < n_nodes; ++i)
         for (unsigned int d = 0; d < dim; ++d)
@@ -177,7 +234,9 @@ namespace Friction
 
   template <int dim>
   void
-  renumber_nodes(DoFHandler<dim> &dof_handler)
+  renumber_nodes(
+    DoFHandler<dim>                                     &dof_handler,
+    const std::function<bool(const types::boundary_id)> &has_contact)
   {
     std::vector<types::global_dof_index> vertex_dofs;
     for (const auto &cell : dof_handler.active_cell_iterators())
@@ -185,26 +244,45 @@ namespace Friction
         for (const unsigned int v : cell->vertex_indices())
           vertex_dofs.push_back(cell->vertex_dof_index(v, 0));
     dof_handler.renumber_dofs(
-      new_numbers<dim>(dof_handler.locally_owned_dofs(), vertex_dofs));
+      new_numbers<dim>(dof_handler.locally_owned_dofs(),
+                       vertex_dofs,
+                       contact_dofs(dof_handler, has_contact)));
 
+    // A node of a level that touches no refined cell, or a coarser one, is not
+    // relaxed there; see LevelHierarchy.
+    const auto around = levels_around_vertices(dof_handler.get_triangulation());
+    std::vector<types::global_dof_index> not_relaxed;
     for (unsigned int level = 0;
          level < dof_handler.get_triangulation().n_global_levels();
          ++level)
       {
         vertex_dofs.clear();
+        not_relaxed.clear();
         for (const auto &cell : dof_handler.mg_cell_iterators_on_level(level))
           if (cell->level_subdomain_id() != numbers::artificial_subdomain_id)
             for (const unsigned int v : cell->vertex_indices())
-              vertex_dofs.push_back(cell->mg_vertex_dof_index(level, v, 0));
+              {
+                vertex_dofs.push_back(cell->mg_vertex_dof_index(level, v, 0));
+                const std::array<int, 2> &levels =
+                  around[cell->vertex_index(v)];
+                if (levels[0] < static_cast<int>(level) ||
+                    levels[1] <= static_cast<int>(level))
+                  not_relaxed.push_back(vertex_dofs.back());
+              }
         dof_handler.renumber_dofs(
           level,
           new_numbers<dim>(dof_handler.locally_owned_mg_dofs(level),
-                           vertex_dofs));
+                           vertex_dofs,
+                           not_relaxed));
       }
   }
 
 
 
-  template void renumber_nodes(DoFHandler<2> &);
-  template void renumber_nodes(DoFHandler<3> &);
+  template void
+  renumber_nodes(DoFHandler<2> &,
+                 const std::function<bool(const types::boundary_id)> &);
+  template void
+  renumber_nodes(DoFHandler<3> &,
+                 const std::function<bool(const types::boundary_id)> &);
 } // namespace Friction

@@ -41,9 +41,8 @@ namespace Friction
     matrix->reinit(owned, owned, pattern, comm);
 
     for (unsigned int i = 0; i < leaf_matrix.n_rows(); ++i)
-      if (leaf_matrix.row_begin(i) != leaf_matrix.row_end(i))
-        scale = std::max(
-          scale, trace<dim>(leaf_matrix.block(leaf_matrix.row_begin(i))));
+      if (!leaf_matrix.is_empty(i))
+        scale = std::max(scale, trace<dim>(leaf_matrix.diagonal(i)));
     scale = max_over_processes(scale, comm);
     if (scale == 0)
       scale = 1.;
@@ -86,7 +85,7 @@ namespace Friction
     };
     for (unsigned int i = 0; i < leaf_matrix.n_rows(); ++i)
       {
-        const bool empty = leaf_matrix.row_begin(i) == leaf_matrix.row_end(i);
+        const bool empty = leaf_matrix.is_empty(i);
         if (empty)
           for (unsigned int d = 0; d < dim; ++d)
             matrix->set(dof(i, d), dof(i, d), scale);
@@ -96,7 +95,7 @@ namespace Friction
           {
             const unsigned int j = leaf_matrix.column(e);
             NodeBlock<dim>     block =
-              current.linearized_block(i, leaf_matrix.block(e), j);
+              current.linearized_block(i, leaf_matrix.value(i, e).data(), j);
             if (i == j)
               for (unsigned int c = 0; c < dim; ++c)
                 for (unsigned int r = 0; r < dim; ++r)

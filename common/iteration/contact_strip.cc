@@ -142,18 +142,18 @@ namespace Friction
             const unsigned int other = A.column(e);
             if (!is_inside(other))
               continue;
-            NodeBlock<dim> block =
-              current->truncated_block(node, A.block(e), other);
+            const NodeBlock<dim> stiffness = A.value(node, e);
+            NodeBlock<dim>       block =
+              current->truncated_block(node, stiffness.data(), other);
             if (slider != nullptr)
               {
-                NodeBlock<dim> full;
-                std::copy_n(A.block(e), dim * dim, full.begin());
-                full = times<dim>(full, current->projector(other));
+                const NodeBlock<dim> full =
+                  times<dim>(stiffness, current->projector(other));
                 subtract_change_of_bound<dim>(block, slope, *slider, full);
               }
             if (other == node)
               {
-                const double scale = trace<dim>(A.block(e)) / dim;
+                const double scale = trace<dim>(stiffness.data()) / dim;
                 for (unsigned int c = 0; c < dim; ++c)
                   for (unsigned int r = 0; r < dim; ++r)
                     block[c * dim + r] +=

@@ -55,13 +55,13 @@ namespace Friction
     factor.assign(std::size_t(n) * n, 0.);
     double scale = 0;
     for (unsigned int i = 0; i < A.n_rows(); ++i)
-      scale = std::max(scale, trace<dim>(A.block(A.row_begin(i))) / dim);
+      scale = std::max(scale, trace<dim>(A.diagonal(i)) / dim);
     for (unsigned int i = 0; i < A.n_rows(); ++i)
       for (std::size_t e = A.row_begin(i); e < A.row_end(i); ++e)
         {
           const unsigned int   j = A.column(e);
           const NodeBlock<dim> block =
-            current.linearized_block(i, A.block(e), j);
+            current.linearized_block(i, A.value(i, e).data(), j);
           for (unsigned int c = 0; c < dim; ++c)
             for (unsigned int r = 0; r < dim; ++r)
               {

@@ -74,12 +74,12 @@ namespace Friction
       if (first[i] < first[i + 1])
         for (std::size_t e = A.row_begin(i); e < A.row_end(i); ++e)
           {
-            const unsigned int j = A.column(e);
-            NodeBlock<dim> block = current.linearized_block(i, A.block(e), j);
+            const unsigned int   j      = A.column(e);
+            const NodeBlock<dim> column = A.value(i, e);
+            NodeBlock<dim>       block =
+              current.linearized_block(i, column.data(), j);
             if (slider[i] != nullptr)
               {
-                NodeBlock<dim> column;
-                std::copy_n(A.block(e), dim * dim, column.begin());
                 subtract_change_of_bound<dim>(
                   block,
                   slope[i],
@@ -97,7 +97,7 @@ namespace Friction
             if (i == j)
               for (unsigned int r = first[i]; r < first[i + 1]; ++r)
                 matrix[std::size_t(r) * n + r] +=
-                  shift * trace<dim>(A.block(e)) / dim;
+                  shift * trace<dim>(column.data()) / dim;
           }
   }
 

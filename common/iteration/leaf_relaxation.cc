@@ -90,10 +90,9 @@ namespace Friction
           // may answer by more than what has been taken away.
           if ((*slopes)[p] != NodeValue<dim>{})
             continue;
-          const unsigned int   node = contact[p].node;
-          const NodeValue<dim> product =
-            matrix.row_times(node, v.begin(), sweeps.backwards);
-          NodeValue<dim> rest;
+          const unsigned int   node    = contact[p].node;
+          const NodeValue<dim> product = matrix.row_times(node, v.begin());
+          NodeValue<dim>       rest;
           for (unsigned int d = 0; d < dim; ++d)
             rest[d] = r.local_element(dim * node + d) - product[d];
           apply_law(p, rest.data());

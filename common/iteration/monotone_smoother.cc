@@ -30,7 +30,7 @@ namespace Friction
         NodeBlock<dim>       A       = zero_block<dim>();
         const NodeBlock<dim> damping = interface_damping(matrix, p.node);
         for (unsigned int e = 0; e < dim * dim; ++e)
-          A[e] = matrix.block(matrix.row_begin(p.node))[e] + damping[e];
+          A[e] = matrix.diagonal(p.node)[e] + damping[e];
         if (damping != zero_block<dim>())
           damped_diagonals[p.node] = A;
 
@@ -49,14 +49,16 @@ namespace Friction
           block, p.gap, p.n_free_tangents, local_solver);
       }
 
+    // Hanging nodes, whose rows are empty, interrupt no range.
     for (unsigned int node = 0; node < is_ordinary.size(); ++node)
-      if (is_ordinary[node])
+      if (matrix.is_empty(node))
+        append(ordinary, node);
+      else if (is_ordinary[node])
         {
           append(ordinary, node);
 
           NodeBlock<dim> block;
-          std::copy_n(
-            matrix.block(matrix.row_begin(node)), dim * dim, block.begin());
+          std::copy_n(matrix.diagonal(node), dim * dim, block.begin());
           const NodeBlock<dim> damping = interface_damping(matrix, node);
           for (unsigned int e = 0; e < dim * dim; ++e)
             block[e] += damping[e];
@@ -71,17 +73,19 @@ namespace Friction
 
     ordinary_nodes =
       std::make_unique<GaussSeidel<dim>>(matrix, inverses, ordinary);
-    const SweepSchedule<dim> &schedule = ordinary_nodes->schedule();
-    first_contact.assign(schedule.n_chunks() + 1, 0);
-    for (const ContactNode<dim> &p : contact)
-      ++first_contact[schedule.chunk_of(p.node) + 1];
-    for (unsigned int c = 0; c < schedule.n_chunks(); ++c)
-      first_contact[c + 1] += first_contact[c];
-    by_chunk.resize(contact.size());
-    std::vector<unsigned int> next(first_contact.begin(),
-                                   first_contact.end() - 1);
     for (unsigned int p = 0; p < contact.size(); ++p)
-      by_chunk[next[schedule.chunk_of(contact[p].node)]++] = p;
+      in_order.push_back(p);
+    std::sort(in_order.begin(),
+              in_order.end(),
+              [&](const unsigned int p, const unsigned int q) {
+                return contact[p].node < contact[q].node;
+              });
+    const SweepSchedule<dim> &schedule = ordinary_nodes->schedule();
+    first_of_chunk.assign(schedule.n_chunks() + 1, 0);
+    for (const ContactNode<dim> &p : contact)
+      ++first_of_chunk[schedule.chunk_of(p.node) + 1];
+    for (unsigned int c = 0; c < schedule.n_chunks(); ++c)
+      first_of_chunk[c + 1] += first_of_chunk[c];
   }
 
 
@@ -116,6 +120,8 @@ namespace Friction
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::leading_sweeps);
     const NodeBlockMatrix<dim> &matrix    = problem.stiffness.blocks();
+    const BlockRows<dim>        rows      = matrix.rows();
+    const ContactBoundary<dim> &contact   = problem.contact;
     const SweepSchedule<dim>   &schedule  = ordinary_nodes->schedule();
     const bool                  backwards = sweeps.backwards;
     const double               *f         = problem.forces.begin();
@@ -124,39 +130,72 @@ namespace Friction
     if (!backwards && x.residual.size() != x.u.size())
       x.residual.reinit(x.u, true);
 
-    const auto relax_contact_nodes =
-      [&](const unsigned int chunk, const bool update, Prefetch &fetch) {
-        const unsigned int begin = first_contact[chunk],
-                           end   = first_contact[chunk + 1];
-        const auto at            = [&](const unsigned int i) {
-          return by_chunk[backwards ? begin + end - 1 - i : i];
-        };
-        for (unsigned int i = begin; i < end; ++i)
-          {
-            fetch.step();
-            if (i + 1 < end)
-              matrix.prefetch(problem.contact[at(i + 1)].node);
-            relax_contact_node(at(i), x, update, backwards);
-          }
+    // Rows that are no ordinary nodes': contact nodes, and between them some
+    // where nothing can move.
+    const auto do_others = [&](const RowKernels::RowLoop &loop,
+                               const bool                 update) {
+      const RowRange all = loop.rows;
+      const auto pass = [&](const unsigned int first, const unsigned int end) {
+        if (first < end)
+          RowKernels::pass<dim>(
+            rows, {{first, end}, backwards, loop.prefetch, loop.left}, u);
       };
+      const unsigned int chunk = schedule.chunk_of(all.first);
+      const auto         node  = [&](const unsigned int number) {
+        return contact[in_order[number]].node;
+      };
+      unsigned int begin = first_of_chunk[chunk],
+                   end   = first_of_chunk[chunk + 1];
+      while (begin < end && node(begin) < all.first)
+        ++begin;
+      while (begin < end && node(end - 1) >= all.second)
+        --end;
+      const auto relax = [&](const unsigned int p) {
+        loop.prefetch.step();
+        relax_contact_node(p, x, update, loop);
+      };
+      unsigned int done = backwards ? all.second : all.first;
+      if (!backwards)
+        {
+          for (unsigned int i = begin; i < end; ++i)
+            {
+              pass(done, node(i));
+              relax(in_order[i]);
+              done = node(i) + 1;
+            }
+          pass(done, all.second);
+        }
+      else
+        {
+          for (unsigned int i = end; i-- > begin;)
+            {
+              pass(node(i) + 1, done);
+              relax(in_order[i]);
+              done = node(i);
+            }
+          pass(all.first, done);
+        }
+    };
 
     schedule.run(
       sweeps,
       /*with residual =*/!backwards,
-      [&](const unsigned int stage,
-          const unsigned int chunk,
-          const RowRange    &ahead) {
-        const bool update =
-          x.updates_normal_forces && (stage > 0 || !trust_first_normal_forces);
-        const RowRange rows = schedule.chunk(chunk);
-        if (stage == sweeps.number)
-          return matrix.residual(x.residual.begin(), f, u, rows, ahead);
-        Prefetch fetch = matrix.prefetch(ahead, rows.second - rows.first);
-        if (backwards)
-          relax_contact_nodes(chunk, update, fetch);
-        ordinary_nodes->relax_chunk(chunk, f, u, backwards, fetch);
-        if (!backwards)
-          relax_contact_nodes(chunk, update, fetch);
+      [&](const Stage &stage, const RowRange &ahead) {
+        const RowRange all   = schedule.chunk(stage.chunk);
+        Prefetch       fetch = matrix.prefetch(ahead, all.second - all.first);
+        RowKernels::RowLoop loop{
+          all, backwards, fetch, ordinary_nodes->left_sums(stage)};
+        if (stage.kind == Stage::adds_shares)
+          return RowKernels::pass<dim>(rows, loop, u);
+        if (stage.kind == Stage::computes_residual)
+          return RowKernels::residual<dim>(
+            rows, loop, x.residual.begin(), f, u);
+        const bool update = x.updates_normal_forces &&
+          (stage.sweep > 0 || !trust_first_normal_forces);
+        ordinary_nodes->relax_chunk(
+          stage, loop, f, u, [&](const RowKernels::RowLoop &others) {
+            do_others(others, update);
+          });
       },
       problem.stiffness.ghosts(),
       u);
@@ -170,10 +209,11 @@ namespace Friction
 
   template <int dim>
   void
-  MonotoneSmoother<dim>::relax_contact_node(const unsigned int p,
-                                            Iterate           &x,
-                                            const bool update_normal_force,
-                                            const bool backwards) const
+  MonotoneSmoother<dim>::relax_contact_node(
+    const unsigned int         p,
+    Iterate                   &x,
+    const bool                 update_normal_force,
+    const RowKernels::RowLoop &loop) const
   {
     const NodeBlockMatrix<dim> &matrix = problem.stiffness.blocks();
     const ContactNode<dim>     &node   = problem.contact[p];
@@ -182,17 +222,16 @@ namespace Friction
     // The force that the other nodes leave, r~ = r + A_pp u_p in (6.18); at an
     // interface to other processes with the damping in A_pp. Displacements of
     // the local problem count from where friction does.
-    const NodeValue<dim> product =
-      matrix.row_times(node.node, x.u.begin(), backwards);
+    const NodeValue<dim> product = RowKernels::times<dim>(
+      matrix.rows(), node.node, x.u.begin(), loop.backwards, loop.left);
     const auto     damped = damped_diagonals.find(node.node);
     Tensor<1, dim> residual, force, old_value;
     NodeValue<dim> from_origin;
     for (unsigned int d = 0; d < dim; ++d)
       from_origin[d] = old_value[d] = value[d] - node.slip_origin[d];
     const NodeValue<dim> diagonal =
-      times<dim>(damped == damped_diagonals.end()
-                   ? matrix.block(matrix.row_begin(node.node))
-                   : damped->second.data(),
+      times<dim>(damped == damped_diagonals.end() ? matrix.diagonal(node.node)
+                                                  : damped->second.data(),
                  from_origin.data());
     for (unsigned int d = 0; d < dim; ++d)
       {
@@ -229,6 +268,8 @@ namespace Friction
     for (unsigned int d = 0; d < dim; ++d)
       value[d] = new_value[d];
     x.state.set(p, z.in_contact, z.sticks);
+    RowKernels::add_share<dim>(
+      matrix.rows(), node.node, x.u.begin(), loop.left);
   }
 
 

@@ -24,10 +24,11 @@ namespace Friction
    * convergent for given normal forces, whatever the coarse levels contribute,
    * if the stiffness matrix is positive definite.
    *
-   * Nodes are taken by ascending number, in chunks of which the ordinary nodes
-   * come first and the contact nodes last, so that the long loop over the
-   * ordinary ones needs no test; a backward sweep is the exact reverse. Several
-   * sweeps follow each other through the cache, see SweepSchedule.
+   * Nodes are taken by ascending number; a backward sweep is the exact reverse.
+   * In each chunk of some hundred nodes the contact nodes come last, see
+   * renumber_nodes(), so that the long loop over the ordinary ones needs no
+   * test. Several sweeps follow each other through the cache, see
+   * SweepSchedule.
    *
    * With several processes each relaxes its own nodes, against the ghost values
    * of the sweep before. Where a node couples to nodes of others, its diagonal
@@ -90,18 +91,17 @@ namespace Friction
     // Diagonal blocks of contact nodes where they had to be enlarged.
     std::map<unsigned int, NodeBlock<dim>> damped_diagonals;
 
-    // Contact nodes by chunk: those of chunk c are first_contact[c],... in the
-    // permutation by_chunk.
-    std::vector<unsigned int> first_contact, by_chunk;
+    // Contact nodes in the order of their nodes, and by chunk the first one.
+    std::vector<unsigned int> in_order, first_of_chunk;
 
     void sweep(Iterate      &x,
                const Sweeps &sweeps,
                const bool    trust_first_normal_forces) const;
 
-    void relax_contact_node(const unsigned int p,
-                            Iterate           &x,
-                            const bool         update_normal_force,
-                            const bool         backwards) const;
+    void relax_contact_node(const unsigned int         p,
+                            Iterate                   &x,
+                            const bool                 update_normal_force,
+                            const RowKernels::RowLoop &loop) const;
   };
 } // namespace Friction
 

@@ -89,11 +89,12 @@ namespace Friction
               continue;
             if (truncation.is_identity(i) && truncation.is_identity(j))
               {
-                visitor(j, matrix.block(e));
+                visitor(j, matrix.value(i, e).data());
                 continue;
               }
             visitor(j,
-                    truncation.linearized_block(i, matrix.block(e), j).data());
+                    truncation.linearized_block(i, matrix.value(i, e).data(), j)
+                      .data());
           }
       }
     };
@@ -573,7 +574,7 @@ namespace Friction
   {
     constexpr double large     = 30;
     const auto       stiffness = [&](const unsigned int i) {
-      return trace<dim>(matrix.block(matrix.row_begin(i)));
+      return trace<dim>(matrix.diagonal(i));
     };
     // Each node and the next one in its row: chains of these lead out of every
     // part of the body.

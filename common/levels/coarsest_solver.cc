@@ -68,8 +68,8 @@ namespace Friction
 
     double scale = 0;
     for (unsigned int i = 0; i < B.n_rows(); ++i)
-      if (B.row_begin(i) != B.row_end(i))
-        scale = std::max(scale, trace<dim>(B.block(B.row_begin(i))));
+      if (!B.is_empty(i))
+        scale = std::max(scale, trace<dim>(B.diagonal(i)));
     scale = max_over_processes(scale, rhs.get_mpi_communicator());
     if (scale == 0)
       scale = 1.;
@@ -95,11 +95,9 @@ namespace Friction
           row.clear();
         for (std::size_t e = B.row_begin(i); e < B.row_end(i); ++e)
           {
-            const unsigned int j = B.column(e);
-            NodeBlock<dim>     block;
-            std::copy_n(B.block(e), dim * dim, block.begin());
-            block =
-              times<dim>(times<dim>(complements[i], block), complements[j]);
+            const unsigned int   j     = B.column(e);
+            const NodeBlock<dim> block = times<dim>(
+              times<dim>(complements[i], B.value(i, e)), complements[j]);
             for (unsigned int c = 0; c < dim; ++c)
               {
                 columns.push_back(dof(j, c));

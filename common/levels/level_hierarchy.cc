@@ -475,6 +475,8 @@ namespace Friction
           }
       }
     owned_pattern->columns.shrink_to_fit();
+    if (stores_half<dim>)
+      owned_pattern->store_half();
     for (const unsigned int column : owned_pattern->columns)
       if (column >= n_owned)
         level.coupled.push_back(column);

@@ -11,7 +11,10 @@ namespace Friction
   namespace
   {
     constexpr int tag = 4712;
-  }
+
+    // To the left of the diagonal, where it need not be added.
+    constexpr std::size_t is_elsewhere = static_cast<std::size_t>(-1);
+  } // namespace
 
 
 
@@ -65,10 +68,9 @@ namespace Friction
         for (unsigned int row = 0; row < n_nodes; ++row)
           {
             compute_row(k, row);
-            untruncated_traces[k][row] =
-              matrices[k].row_begin(row) == matrices[k].row_end(row)
+            untruncated_traces[k][row] = matrices[k].is_empty(row)
               ? 0.
-              : trace<dim>(matrices[k].block(matrices[k].row_begin(row)));
+              : trace<dim>(matrices[k].diagonal(row));
             compute_inverse(k, row);
           }
       }
@@ -98,7 +100,9 @@ namespace Friction
           {
             IncomingPart part;
             for (const unsigned int column : row.columns)
-              part.positions.push_back(matrices[k].find(row.row, column));
+              part.positions.push_back(stores_half<dim> && column < row.row
+                                         ? is_elsewhere
+                                         : matrices[k].find(row.row, column));
             part.values.assign(part.positions.size() * dim * dim, 0.);
             parts.push_back(std::move(part));
           }
@@ -136,9 +140,12 @@ namespace Friction
         if (!changed[r])
           continue;
         message.push_back(n);
+        const double *blocks = outgoing[k].block(r, outgoing[k].row_begin(r));
         message.insert(message.end(),
-                       outgoing[k].block(outgoing[k].row_begin(r)),
-                       outgoing[k].block(outgoing[k].row_end(r)));
+                       blocks,
+                       blocks +
+                         dim * dim *
+                           (outgoing[k].row_end(r) - outgoing[k].row_begin(r)));
       }
     std::vector<MPI_Request> requests;
     for (const auto &message : messages)
@@ -202,38 +209,39 @@ namespace Friction
     std::vector<unsigned int> &position = position_of_column[k];
     const unsigned int         row_of_B =
       is_owned ? row : outgoing_row_of[k][row - level.n_nodes()];
-    const std::size_t begin = B.row_begin(row_of_B), end = B.row_end(row_of_B);
+    const std::size_t begin = B.row_begin(row_of_B),
+                      end   = B.stored_end(row_of_B);
+    if (begin == end)
+      return;
+    double *const sums = B.block(row_of_B, begin);
+    std::fill_n(sums, dim * dim * (end - begin), 0.);
     for (std::size_t e = begin; e < end; ++e)
-      {
-        position[B.column(e)] = e - begin;
-        std::fill_n(B.block(e), dim * dim, 0.);
-      }
+      position[B.column(e)] = e - begin;
+    // What is to the left of the diagonal is stored elsewhere. Blocks are
+    // summed up row by row, as they are stored; truncated, they change places.
+    const unsigned int first_column = stores_half<dim> && is_owned ? row : 0;
+    const auto         add_to =
+      [&](const unsigned int column, const double weight, const double *block) {
+        if (column < first_column)
+          return;
+        double *target = sums + dim * dim * position[column];
+        for (unsigned int d = 0; d < dim * dim; ++d)
+          target[d] += weight * block[d];
+      };
 
     if (const LeafNode leaf = level.leaf_node(row); leaf.exists())
-      for (std::size_t e = leaf_matrix.row_begin(leaf.number());
-           e < leaf_matrix.row_end(leaf.number());
-           ++e)
-        {
-          const unsigned int i = leaf.number(), j = leaf_matrix.column(e);
+      leaf_matrix.for_each_block(
+        leaf.number(), [&](const unsigned int j, const double *block) {
+          const unsigned int i = leaf.number();
           if (std::min(hierarchy.finest_level(leaf),
                        hierarchy.finest_level(LeafNode(j))) != k)
-            continue;
-          double *target =
-            B.block(begin + position[hierarchy.node_of_leaf(k, LeafNode(j))]);
+            return;
+          const unsigned int column = hierarchy.node_of_leaf(k, LeafNode(j));
           if (truncation.is_identity(i) && truncation.is_identity(j))
-            {
-              const double *block = leaf_matrix.block(e);
-              for (unsigned int d = 0; d < dim * dim; ++d)
-                target[d] += block[d];
-            }
+            add_to(column, 1., block);
           else
-            {
-              const NodeBlock<dim> block =
-                truncation.linearized_block(i, leaf_matrix.block(e), j);
-              for (unsigned int d = 0; d < dim * dim; ++d)
-                target[d] += block[d];
-            }
-        }
+            add_to(column, 1., truncation.linearized_block(j, block, i).data());
+        });
 
     if (k + 1 < hierarchy.n_levels())
       {
@@ -257,36 +265,29 @@ namespace Friction
           for (auto child = level.children().begin(row);
                child != level.children().end(row);
                ++child)
-            {
-              const NodeBlockMatrix<dim> &finer = matrices[k + 1];
-              for (std::size_t e = finer.row_begin(child->node);
-                   e < finer.row_end(child->node);
-                   ++e)
-                add(child->weight, finer.column(e), finer.block(e));
-            }
+            matrices[k + 1].for_each_block(
+              child->node, [&](const unsigned int column, const double *block) {
+                add(child->weight, column, block);
+              });
         else
           for (auto child = level.leaf_children().begin(row);
                child != level.leaf_children().end(row);
                ++child)
             {
               const unsigned int i = child->node.number();
-              for (std::size_t e = leaf_matrix.row_begin(i);
-                   e < leaf_matrix.row_end(i);
-                   ++e)
-                {
-                  const unsigned int j = leaf_matrix.column(e);
+              leaf_matrix.for_each_block(
+                i, [&](const unsigned int j, const double *block) {
                   if (hierarchy.finest_level(LeafNode(j)) != k + 1)
-                    continue;
+                    return;
                   const unsigned int column =
                     hierarchy.node_of_leaf(k + 1, LeafNode(j));
                   if (truncation.is_identity(i) && truncation.is_identity(j))
-                    add(child->weight, column, leaf_matrix.block(e));
+                    add(child->weight, column, block);
                   else
                     add(child->weight,
                         column,
-                        truncation.linearized_block(i, leaf_matrix.block(e), j)
-                          .data());
-                }
+                        truncation.linearized_block(j, block, i).data());
+                });
             }
 
         const NodeWeights<unsigned int> &parents =
@@ -295,11 +296,7 @@ namespace Friction
           for (auto p = parents.begin(finer_columns[slot]);
                p != parents.end(finer_columns[slot]);
                ++p)
-            {
-              double *target = B.block(begin + position[p->node]);
-              for (unsigned int d = 0; d < dim * dim; ++d)
-                target[d] += p->weight * finer_sums[slot][d];
-            }
+            add_to(p->node, p->weight, finer_sums[slot].data());
       }
 
     // What others contribute, in the order of the processes.
@@ -307,7 +304,9 @@ namespace Friction
       for (const IncomingPart *part : parts_of_row[k][row])
         for (unsigned int p = 0; p < part->positions.size(); ++p)
           {
-            double *target = B.block(part->positions[p]);
+            if (part->positions[p] == is_elsewhere)
+              continue;
+            double *target = B.block(row, part->positions[p]);
             for (unsigned int d = 0; d < dim * dim; ++d)
               target[d] += part->values[p * dim * dim + d];
           }
@@ -325,10 +324,10 @@ namespace Friction
     const NodeBlockMatrix<dim> &B     = matrices[k];
     const auto                 &level = hierarchy.level(k);
     NodeBlock<dim>              block = zero_block<dim>();
-    if (B.row_begin(row) == B.row_end(row) || level.is_hanging(row))
+    if (B.is_empty(row) || level.is_hanging(row))
       return block;
 
-    const double *diagonal = B.block(B.row_begin(row));
+    const double *diagonal = B.diagonal(row);
     for (unsigned int c = 0; c < dim; ++c)
       for (unsigned int r = 0; r < dim; ++r)
         if (!level.is_prescribed(row, c) && !level.is_prescribed(row, r))
@@ -374,12 +373,18 @@ namespace Friction
     if (!true_on_any_process(!changed_nodes.empty(),
                              constraints.communicator()))
       return 0;
+    std::vector<char> changes_subspace;
     for (const unsigned int node : changed_nodes)
-      truncation.set(
-        node, new_truncation.projector(node), new_truncation.curvature(node));
+      {
+        changes_subspace.push_back(truncation.projector(node) !=
+                                   new_truncation.projector(node));
+        truncation.set(
+          node, new_truncation.projector(node), new_truncation.curvature(node));
+      }
 
-    // A change of the leaf block (i,j) shows in row i, and for j=i in the rows
-    // of all neighbours of i, of the level that the block belongs to; from
+    // Another subspace of node i changes the blocks of its row and of its
+    // column, another second derivative the one of its diagonal only. Each
+    // shows in the row that it is in, of the level that it belongs to; from
     // there in the rows of all parents.
     std::vector<std::vector<unsigned int>> rows(hierarchy.n_levels());
     const unsigned int n_owned = constraints.n_owned_nodes();
@@ -390,8 +395,13 @@ namespace Friction
                                       hierarchy.finest_level(LeafNode(j)));
       rows[k].push_back(hierarchy.node_of_leaf(k, LeafNode(i)));
     };
-    for (const unsigned int i : changed_nodes)
-      if (i < n_owned)
+    for (unsigned int c = 0; c < changed_nodes.size(); ++c)
+      if (const unsigned int i = changed_nodes[c]; !changes_subspace[c])
+        {
+          if (i < n_owned && !leaf_matrix.is_empty(i))
+            mark(i, i);
+        }
+      else if (i < n_owned)
         for (std::size_t e = leaf_matrix.row_begin(i);
              e < leaf_matrix.row_end(i);
              ++e)

@@ -77,13 +77,13 @@ namespace Friction
                   front.border[(at - n_own) / dim] == j;
                 if (!is_own && !is_border)
                   continue;
-                const double *block = matrix.block(e);
+                const NodeBlock<dim> block = matrix.value(i, e);
                 for (unsigned int c = 0; c < dim; ++c)
                   for (unsigned int r = 0; r < dim; ++r)
                     if (!is_held[dim * i + r] && !is_held[dim * j + c])
                       F(at + c, dim * k + r) = block[c * dim + r];
               }
-            const double *diagonal = matrix.block(matrix.row_begin(i));
+            const double *diagonal = matrix.diagonal(i);
             for (unsigned int d = 0; d < dim; ++d)
               if (is_held[dim * i + d])
                 F(dim * k + d, dim * k + d) = trace<dim>(diagonal) / dim;

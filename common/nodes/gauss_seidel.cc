@@ -23,45 +23,32 @@ namespace Friction
                         GhostExchange &ghosts,
                         double        *residual) const
   {
+    const BlockRows<dim> rows = A->rows();
+    const auto           pass = [&](const RowKernels::RowLoop &loop) {
+      RowKernels::pass<dim>(rows, loop, x);
+    };
     sweep_schedule.run(
       sweeps,
       residual != nullptr,
-      [&](const unsigned int stage,
-          const unsigned int chunk,
-          const RowRange    &ahead) {
-        if (stage == sweeps.number)
-          A->residual(residual, b, x, sweep_schedule.chunk(chunk), ahead);
+      [&](const Stage &stage, const RowRange &ahead) {
+        if (sweep_schedule.is_empty())
+          return;
+        const RowRange      all   = sweep_schedule.chunk(stage.chunk);
+        Prefetch            fetch = A->prefetch(ahead, all.second - all.first);
+        RowKernels::RowLoop loop{
+          all, sweeps.backwards, fetch, left_sums(stage)};
+        if (stage.kind == Stage::adds_shares)
+          pass(loop);
+        else if (stage.kind == Stage::computes_residual)
+          RowKernels::residual<dim>(rows, loop, residual, b, x);
         else
-          {
-            const RowRange all   = sweep_schedule.chunk(chunk);
-            Prefetch       fetch = A->prefetch(ahead, all.second - all.first);
-            relax_chunk(chunk, b, x, sweeps.backwards, fetch);
-          }
+          relax_chunk(stage, loop, b, x, pass);
       },
       ghosts,
       x);
-  }
-
-
-
-  template <int dim>
-  void
-  GaussSeidel<dim>::relax_chunk(const unsigned int chunk,
-                                const double      *b,
-                                double            *x,
-                                const bool         backwards,
-                                Prefetch          &fetch) const
-  {
-    const BlockRows<dim>  rows    = A->rows();
-    const NodeBlock<dim> *inverse = inverse_diagonals->data();
-    const NodeRanges     &nodes   = sweep_schedule.nodes(chunk);
-    for (unsigned int k = 0; k < nodes.size(); ++k)
-      RowKernels::relax<dim>(
-        rows,
-        inverse,
-        {nodes[backwards ? nodes.size() - 1 - k : k], backwards, fetch},
-        b,
-        x);
+    // Where nothing is relaxed no sums need be passed on.
+    if (sweep_schedule.is_empty() && residual != nullptr)
+      A->residual(residual, b, x);
   }
 
 

@@ -17,7 +17,7 @@ namespace Friction
   {
   public:
     /**
-     * @param A                   whose pattern must be symmetric.
+     * @param A                   symmetric, see NodePattern::store_half().
      * @param inverse_diagonals   one block per row, the (pseudo-)inverse of its
      *                            diagonal block; a zero block leaves its node
      *                            alone. Kept by reference, as is @p A.
@@ -27,7 +27,7 @@ namespace Friction
     GaussSeidel(const NodeBlockMatrix<dim>        &A,
                 const std::vector<NodeBlock<dim>> &inverse_diagonals,
                 const NodeRanges                  &nodes,
-                const unsigned int                 chunk_size = 128);
+                const unsigned int chunk_size = nodes_per_chunk);
 
     /**
      * Several sweeps, and then, if @p residual is not null, the residual
@@ -43,13 +43,24 @@ namespace Friction
              GhostExchange &ghosts,
              double        *residual = nullptr) const;
 
-    /** One sweep over the nodes of one chunk of schedule(), for a caller that
-     * relaxes other nodes in between. @p fetch makes one step for each node. */
-    void relax_chunk(const unsigned int chunk,
-                     const double      *b,
-                     double            *x,
-                     const bool         backwards,
-                     Prefetch          &fetch) const;
+    /** A stage of such sweeps over one chunk of schedule(). The rows of @p loop
+     * are set here, and its prefetch makes one step for each node.
+     * @param do_others  called with each range of rows of the chunk that are
+     * not relaxed, in place of RowKernels::pass(); about the order see
+     * SweepSchedule. */
+    template <typename DoOthers>
+    void relax_chunk(const Stage         &stage,
+                     RowKernels::RowLoop &loop,
+                     const double        *b,
+                     double              *x,
+                     const DoOthers      &do_others) const;
+
+    /** What a stage does with the sums of the left of the diagonal. */
+    RowKernels::LeftSums
+    left_sums(const Stage &stage) const
+    {
+      return {A->partial_sums(), stage.clears, stage.adds};
+    }
 
     const SweepSchedule<dim> &
     schedule() const
@@ -62,6 +73,31 @@ namespace Friction
     const std::vector<NodeBlock<dim>> *inverse_diagonals;
     SweepSchedule<dim>                 sweep_schedule;
   };
+
+
+
+  template <int dim>
+  template <typename DoOthers>
+  void
+  GaussSeidel<dim>::relax_chunk(const Stage         &stage,
+                                RowKernels::RowLoop &loop,
+                                const double        *b,
+                                double              *x,
+                                const DoOthers      &do_others) const
+  {
+    const BlockRows<dim>  rows    = A->rows();
+    const NodeBlock<dim> *inverse = inverse_diagonals->data();
+    const auto           &parts   = sweep_schedule.parts(stage.chunk);
+    for (unsigned int k = 0; k < parts.size(); ++k)
+      {
+        const auto &part = parts[loop.backwards ? parts.size() - 1 - k : k];
+        loop.rows        = part.rows;
+        if (part.is_relaxed)
+          RowKernels::relax<dim>(rows, inverse, loop, b, x);
+        else
+          do_others(loop);
+      }
+  }
 } // namespace Friction
 
 #endif

@@ -45,8 +45,8 @@ namespace Friction
     Matrix<dim> majorant = Matrix<dim>::Zero();
     for (std::size_t e = A.row_begin(row); e < A.row_end(row); ++e)
       if (A.column(e) >= A.n_rows())
-        majorant +=
-          left_absolute_value(Eigen::Map<const Matrix<dim>>(A.block(e)));
+        majorant += left_absolute_value(
+          Eigen::Map<const Matrix<dim>>(A.value(row, e).data()));
     return symmetric_block<dim>(majorant);
   }
 
@@ -61,7 +61,7 @@ namespace Friction
 
     const NodeBlock<dim> majorant = interface_majorant(A, row);
     const Matrix<dim> lacking = Eigen::Map<const Matrix<dim>>(majorant.data()) -
-      (1. - remains) * Eigen::Map<const Matrix<dim>>(A.block(A.row_begin(row)));
+      (1. - remains) * Eigen::Map<const Matrix<dim>>(A.diagonal(row));
     const Eigenpairs eigen = eigenpairs(.5 * (lacking + lacking.transpose()));
     Matrix<dim>      positive = Matrix<dim>::Zero();
     for (int d = 0; d < dim; ++d)

@@ -45,7 +45,7 @@ namespace Friction
     const double *
     diagonal_block(const unsigned int node) const
     {
-      return matrix.block(matrix.row_begin(node));
+      return matrix.diagonal(node);
     }
 
     /** Brings the values of the nodes that owned rows couple to up to date.
@@ -56,7 +56,7 @@ namespace Friction
     void vmult(VectorType &Av, const VectorType &v) const;
 
     /** The share of this process in $v^TAv$, which is to be summed over all.
-     * Takes half of what vmult() does. Collective. */
+     * Takes less than vmult(). Collective. */
     double energy_product(const VectorType &v) const;
 
     /** r := f - A v. Collective. */

@@ -36,7 +36,7 @@ namespace Friction
       Partners partners{{none, none}};
       for (std::size_t k = A.row_begin(row) + 1; k < A.row_end(row); ++k)
         {
-          double       strength = -trace<dim>(A.block(k));
+          double       strength = -A.trace_of(row, k);
           unsigned int column   = A.column(k);
           for (unsigned int i = 0; i < 2; ++i)
             if (strength > strengths[i])
@@ -45,7 +45,7 @@ namespace Friction
                 std::swap(column, partners[i]);
               }
         }
-      const double diagonal = trace<dim>(A.block(A.row_begin(row)));
+      const double diagonal = trace<dim>(A.diagonal(row));
       if (strengths[0] + strengths[1] < anisotropy * diagonal || diagonal <= 0.)
         return Partners{{none, none}};
       for (unsigned int &partner : partners)
@@ -107,7 +107,7 @@ namespace Friction
       }
     for (const unsigned int i : nodes)
       {
-        cuts.push_back(1e-10 * trace<dim>(A.block(A.row_begin(i))));
+        cuts.push_back(1e-10 * trace<dim>(A.diagonal(i)));
         unsigned char components = 0;
         for (unsigned int c = 0; c < dim; ++c)
           if (!is_held(i, c))
@@ -216,8 +216,7 @@ namespace Friction
   {
     truncation       = the_truncation;
     const auto block = [&](const unsigned int i, const std::size_t position) {
-      NodeBlock<dim> result;
-      std::copy_n(A->block(position), dim * dim, result.begin());
+      const NodeBlock<dim> result = A->value(i, position);
       if (truncation == nullptr)
         return result;
       return truncation->truncated_block(i, result.data(), A->column(position));

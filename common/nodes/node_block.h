@@ -15,9 +15,8 @@ namespace Friction
   using NodeValue = std::array<double, dim>;
 
   /**
-   * The coupling of two nodes: a dense dim x dim matrix, stored column by
-   * column, so that a block times a vector is a sum of scaled columns, which is
-   * what vector instructions are good at.
+   * The coupling of two nodes: a dense dim x dim matrix, column by column.
+   * (Inside of a NodeBlockMatrix they are stored row by row.)
    */
   template <int dim>
   using NodeBlock = std::array<double, dim * dim>;

@@ -5,6 +5,9 @@
 #include <common/nodes/node_block.h>
 #include <common/nodes/row_kernels.h>
 
+#include <deal.II/base/exceptions.h>
+
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -14,15 +17,25 @@ namespace Friction
   /**
    * Which blocks a matrix has, in compressed row storage. The columns of row i
    * are in the order i, i+1, ..., and from the last one on to 0, 1, ..., i-1:
-   * the diagonal comes first. A loop over the rows in ascending order, each
-   * from front to back, meets last the columns of those rows that it has just
-   * been to; in descending order, each from back to front, as well (but for the
-   * diagonal).
+   * the diagonal comes first, then what is to its right, columns of other
+   * processes included, whose numbers are larger than those of all rows.
+   *
+   * A symmetric matrix is stored by halves: what is to the left of the diagonal
+   * is stored as a block of another row only. A row still knows all of its
+   * columns, and where the blocks of the left ones are.
    */
   struct NodePattern
   {
     std::vector<std::size_t>  starts = {0}; ///< n_rows + 1 of them
     std::vector<unsigned int> columns;
+
+    /// If only half of the blocks are stored: how many are in the rows before
+    /// each one, and in all; otherwise empty.
+    std::vector<std::size_t> stored_starts;
+
+    /// For each block that is not stored, row after row: the number of the
+    /// stored one that is its transpose.
+    std::vector<unsigned int> mirror_images;
 
     unsigned int
     n_rows() const
@@ -44,11 +57,17 @@ namespace Friction
     /** Takes @p row_columns, which it sorts, as the columns of the next row. */
     void append_row(std::vector<unsigned int> &row_columns);
 
+    /** To be called when all rows are there, for a symmetric matrix: among the
+     * rows the pattern itself has to be symmetric, and each row that has a
+     * block has a diagonal one. */
+    void store_half();
+
     std::size_t
     memory_consumption() const
     {
-      return starts.capacity() * sizeof(std::size_t) +
-        columns.capacity() * sizeof(unsigned int);
+      return (starts.capacity() + stored_starts.capacity()) *
+        sizeof(std::size_t) +
+        (columns.capacity() + mirror_images.capacity()) * sizeof(unsigned int);
     }
   };
 
@@ -60,7 +79,10 @@ namespace Friction
    * Everything the method does is nodewise: relaxation solves a dim x dim
    * problem at each node, truncation acts on the blocks of a node. Storing one
    * column index per block instead of one per entry also makes a relaxation
-   * sweep read a third less memory, and memory is what a sweep waits for.
+   * sweep read a third less memory, and memory is what a sweep waits for. So
+   * does, once more by nearly half, storing a symmetric matrix by halves, see
+   * NodePattern. What works with whole matrices, products and sweeps, needs
+   * that; a row by itself can be read in any case.
    *
    * Rows are the locally owned nodes; columns count owned nodes first and ghost
    * nodes after them, as the local elements of
@@ -89,6 +111,13 @@ namespace Friction
       return pattern == nullptr ? 0 : pattern->columns.size();
     }
 
+    /** How many of them are stored. */
+    std::size_t
+    n_stored_blocks() const
+    {
+      return pattern == nullptr ? 0 : stored_starts[n_rows()];
+    }
+
     /** Which blocks there are. */
     const NodePattern &
     sparsity() const
@@ -109,53 +138,144 @@ namespace Friction
       return row_starts[row + 1];
     }
 
+    /** The end of the blocks that are stored with a row, by which the others
+     * begin. */
+    std::size_t
+    stored_end(const unsigned int row) const
+    {
+      return row_starts[row] + stored_starts[row + 1] - stored_starts[row];
+    }
+
     unsigned int
     column(const std::size_t position) const
     {
       return columns[position];
     }
 
-    /** The dim*dim values of the block at a position, column by column. */
+    /** The dim*dim values, row by row, of the block of a row at a position
+     * before stored_end(). */
     double *
-    block(const std::size_t position)
+    block(const unsigned int row, const std::size_t position)
     {
-      return values.data() + position * (dim * dim);
+      Assert(position < stored_end(row), dealii::ExcInternalError());
+      return values.data() +
+        (stored_starts[row] + position - row_starts[row]) * (dim * dim);
     }
 
     const double *
-    block(const std::size_t position) const
+    block(const unsigned int row, const std::size_t position) const
     {
-      return values.data() + position * (dim * dim);
+      Assert(position < stored_end(row), dealii::ExcInternalError());
+      return values.data() +
+        (stored_starts[row] + position - row_starts[row]) * (dim * dim);
+    }
+
+    /** The block of a row at any of its positions, like all blocks by
+     * themselves column by column. */
+    NodeBlock<dim>
+    value(const unsigned int row, const std::size_t position) const
+    {
+      NodeBlock<dim>    result;
+      const std::size_t end = stored_end(row);
+      if (position >= end)
+        std::copy_n(
+          mirror_image(row, position - end), dim * dim, result.begin());
+      else
+        {
+          const double *stored = block(row, position);
+          for (int c = 0; c < dim; ++c)
+            for (int r = 0; r < dim; ++r)
+              result[c * dim + r] = stored[r * dim + c];
+        }
+      return result;
+    }
+
+    /** Sets a block at a position before stored_end(), given column by column.
+     */
+    void
+    set(const unsigned int    row,
+        const std::size_t     position,
+        const NodeBlock<dim> &value)
+    {
+      double *stored = block(row, position);
+      for (int r = 0; r < dim; ++r)
+        for (int c = 0; c < dim; ++c)
+          stored[r * dim + c] = value[c * dim + r];
+    }
+
+    /** Calls @p f with column and block, dim*dim values row by row, of each
+     * block of a row. */
+    template <typename Function>
+    void
+    for_each_block(const unsigned int row, const Function &f) const
+    {
+      std::size_t       e   = row_begin(row);
+      const std::size_t end = row_end(row), stored = stored_end(row);
+      for (; e < stored; ++e)
+        f(columns[e], block(row, e));
+      double transposed[dim * dim];
+      for (; e < end; ++e)
+        {
+          const double *image = mirror_image(row, e - stored);
+          for (int r = 0; r < dim; ++r)
+            for (int c = 0; c < dim; ++c)
+              transposed[r * dim + c] = image[c * dim + r];
+          f(columns[e], static_cast<const double *>(transposed));
+        }
+    }
+
+    /** The trace of that. */
+    double
+    trace_of(const unsigned int row, const std::size_t position) const
+    {
+      const std::size_t end = stored_end(row);
+      return trace<dim>(position < end ? block(row, position)
+                                       : mirror_image(row, position - end));
+    }
+
+    /** The diagonal block of a row that is not empty. If the matrix is
+     * symmetric, rows and columns are the same. */
+    double *
+    diagonal(const unsigned int row)
+    {
+      return block(row, row_starts[row]);
+    }
+
+    const double *
+    diagonal(const unsigned int row) const
+    {
+      return block(row, row_starts[row]);
+    }
+
+    bool
+    is_empty(const unsigned int row) const
+    {
+      return row_starts[row] == row_starts[row + 1];
     }
 
     /** The position of block (row,column), or row_end(row) if there is none. */
     std::size_t find(const unsigned int row, const unsigned int column) const;
 
-    /** The value of row @p row of the product A x; about @p backwards see
-     * RowKernels::times(). */
-    NodeValue<dim>
-    row_times(const unsigned int row,
-              const double      *x,
-              const bool         backwards = false) const
-    {
-      return RowKernels::times<dim>(rows(), row, x, backwards);
-    }
+    /** The value of row @p row of the product A x. What is stored elsewhere is
+     * looked for there. */
+    NodeValue<dim> row_times(const unsigned int row, const double *x) const;
 
     /** For RowKernels. */
     BlockRows<dim>
     rows() const
     {
-      return {row_starts, columns, values.data()};
+      return {row_starts, stored_starts, columns, values.data(), n_rows()};
     }
+
+    /** Room for what RowKernels add up on the left of the diagonal; all zero,
+     * as each loop over all rows has to leave it. */
+    double *partial_sums() const;
 
     /** Has the memory of a row brought closer, for use in the near future. */
     void
     prefetch(const unsigned int row) const
     {
-      const char *begin =
-        reinterpret_cast<const char *>(block(row_starts[row]));
-      const char *end =
-        reinterpret_cast<const char *>(block(row_starts[row + 1]));
+      const char *begin = address(row), *end = address(row + 1);
       for (; begin < end; begin += 64)
         __builtin_prefetch(begin);
       __builtin_prefetch(columns + row_starts[row]);
@@ -167,41 +287,63 @@ namespace Friction
     {
       return rows.first == rows.second
         ? Prefetch()
-        : Prefetch(block(row_starts[rows.first]),
-                   block(row_starts[rows.second]),
-                   n_steps);
+        : Prefetch(address(rows.first), address(rows.second), n_steps);
+    }
+
+    /** Whether all values are those of another matrix with this pattern. */
+    bool
+    has_values_of(const NodeBlockMatrix &other) const
+    {
+      return values == other.values;
     }
 
     /** y = A x. */
     void vmult(double *y, const double *x) const;
 
-    /** The share of this process in $x^TAx$, if A is symmetric: half the
-     * work of vmult() and a scalar product. */
+    /** The share of this process in $x^TAx$, if A is symmetric: with half of
+     * its blocks, and without a vector for $Ax$. */
     double
     energy_product(const double *x) const
     {
-      return RowKernels::energy<dim>(rows(), n_rows(), x);
+      return RowKernels::energy<dim>(rows(), x);
     }
 
     /** r = b - A x. */
     void residual(double *r, const double *b, const double *x) const;
-
-    /** The same for some rows only, and meanwhile has the rows @p ahead brought
-     * into the cache. */
-    void residual(double         *r,
-                  const double   *b,
-                  const double   *x,
-                  const RowRange &rows,
-                  const RowRange &ahead = {}) const;
 
     /** Memory in bytes. */
     std::size_t memory_consumption() const;
 
   private:
     std::shared_ptr<const NodePattern> pattern;
-    const std::size_t                 *row_starts = nullptr;
-    const unsigned int                *columns    = nullptr;
-    HugePageVector<double>             values;
+    const std::size_t                 *row_starts    = nullptr;
+    const std::size_t                 *stored_starts = nullptr;
+    const unsigned int                *columns       = nullptr;
+
+    // And one number behind the last block, which kernels read.
+    HugePageVector<double> values;
+
+    // Only a place to work, which is made by the first kernel that needs it.
+    mutable HugePageVector<double> sums;
+
+    // The transpose of a block that is stored elsewhere, counted from
+    // stored_end() on.
+    const double *
+    mirror_image(const unsigned int row, const std::size_t number) const
+    {
+      return values.data() +
+        std::size_t(pattern->mirror_images[row_starts[row] -
+                                           stored_starts[row] + number]) *
+        (dim * dim);
+    }
+
+    // Of the first block of a row, or the end of the last one.
+    const char *
+    address(const unsigned int row) const
+    {
+      return reinterpret_cast<const char *>(values.data() +
+                                            stored_starts[row] * (dim * dim));
+    }
   };
 
 

@@ -40,7 +40,7 @@ namespace Friction
         numbers.push_back(node.number);
         positions.push_back(node.position);
         is_held.insert(is_held.end(), node.is_held.begin(), node.is_held.end());
-        traces.push_back(trace<dim>(A.block(A.row_begin(node.number))));
+        traces.push_back(trace<dim>(A.diagonal(node.number)));
         is_kept.push_back(node.may_be_truncated);
         is_absent.push_back(std::all_of(node.is_held.begin(),
                                         node.is_held.end(),
@@ -76,10 +76,11 @@ namespace Friction
     for (unsigned int i = 0; i < numbers.size(); ++i)
       {
         for (std::size_t e = matrix.row_begin(i); e < matrix.row_end(i); ++e)
-          std::copy_n(A.block(A.find(numbers[i], numbers[matrix.column(e)])),
-                      dim * dim,
-                      matrix.block(e));
-        double        *diagonal = matrix.block(matrix.row_begin(i));
+          matrix.set(
+            i,
+            e,
+            A.value(numbers[i], A.find(numbers[i], numbers[matrix.column(e)])));
+        double        *diagonal = matrix.diagonal(i);
         NodeBlock<dim> block, null_space;
         std::copy_n(diagonal, dim * dim, block.begin());
         pseudo_inverse<dim>(block, vanishing * traces[i], &null_space);
@@ -98,10 +99,7 @@ namespace Friction
                                const bool                  keeps_copy)
   {
     NodeBlockMatrix<dim> matrix = matrix_of(A);
-    const double *const  values = matrix.block(0);
-    if (copy.n_blocks() > 0 &&
-        std::equal(
-          values, values + dim * dim * matrix.n_blocks(), copy.block(0)))
+    if (copy.n_blocks() > 0 && matrix.has_values_of(copy))
       return;
     copy = keeps_copy ? matrix : NodeBlockMatrix<dim>();
     // What has been truncated was another matrix.
@@ -113,7 +111,7 @@ namespace Friction
         AssertThrow(shift < largest_shift, ExcIndefinitePlane());
         for (unsigned int i = 0; i < numbers.size(); ++i)
           for (unsigned int d = 0; d < dim; ++d)
-            matrix.block(matrix.row_begin(i))[d * dim + d] += shift * traces[i];
+            matrix.diagonal(i)[d * dim + d] += shift * traces[i];
       }
   }
 

@@ -87,6 +87,22 @@ namespace Friction
       return sums[1] <= fewest * sums[0] ? 0. : sums[1] / sums[0];
     }
 
+    /** What becomes of a row of the residual $b-Ax$ with a truncation. */
+    template <int dim>
+    NodeValue<dim>
+    truncated(const Truncation<dim> &truncation,
+              const unsigned int     node,
+              const double          *r,
+              const double          *x)
+    {
+      const NodeValue<dim> curved =
+        times<dim>(truncation.curvature(node).data(), x + dim * node);
+      NodeValue<dim> rest;
+      for (unsigned int d = 0; d < dim; ++d)
+        rest[d] = r[d] - curved[d];
+      return times<dim>(truncation.projector(node).data(), rest.data());
+    }
+
     /**
      * The residual $T(b-(A+\omega'')x)$ of a row, with truncated b; without a
      * truncation $b-Ax$.
@@ -103,13 +119,7 @@ namespace Friction
       for (unsigned int d = 0; d < dim; ++d)
         r[d] = b[dim * node + d] - r[d];
       if (truncation != nullptr && !truncation->is_identity(node))
-        {
-          const NodeValue<dim> curved =
-            times<dim>(truncation->curvature(node).data(), x + dim * node);
-          for (unsigned int d = 0; d < dim; ++d)
-            r[d] -= curved[d];
-          r = times<dim>(truncation->projector(node).data(), r.data());
-        }
+        r = truncated(*truncation, node, r.data(), x);
       return r;
     }
 
@@ -122,11 +132,15 @@ namespace Friction
               const double               *x,
               double                     *result)
     {
-      for (unsigned int i = 0; i < A.n_rows(); ++i)
-        {
-          const NodeValue<dim> r = residual<dim>(A, truncation, i, b, x);
-          std::copy(r.begin(), r.end(), result + dim * i);
-        }
+      A.residual(result, b, x);
+      if (truncation != nullptr)
+        for (unsigned int i = 0; i < A.n_rows(); ++i)
+          if (!truncation->is_identity(i))
+            {
+              const NodeValue<dim> r =
+                truncated(*truncation, i, result + dim * i, x);
+              std::copy(r.begin(), r.end(), result + dim * i);
+            }
     }
   } // namespace RelaxedTogether
 } // namespace Friction

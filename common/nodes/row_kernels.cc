@@ -19,27 +19,25 @@ namespace Friction
         return *reinterpret_cast<const PairInMemory *>(numbers);
       }
 
-      // Four sums; to each is added one of four numbers that follow each other
-      // in memory, times a factor. For processors that calculate with two
-      // numbers at a time,
+      // Four numbers at a time, for processors that calculate with two,
       struct TwoPairs
       {
         Pair lower = {0., 0.}, upper = {0., 0.};
 
-        // The same factor for all.
-        inline DEAL_II_ALWAYS_INLINE void
-        add(const double *a, const double x)
-        {
-          lower += pair(a) * Pair{x, x};
-          upper += pair(a + 2) * Pair{x, x};
-        }
+        TwoPairs() = default;
 
-        // One for the first two, one for the other two.
+        inline DEAL_II_ALWAYS_INLINE
+        TwoPairs(const Pair lower, const Pair upper)
+          : lower(lower)
+          , upper(upper)
+        {}
+
+        // Adds four numbers that follow each other in memory, times these.
         inline DEAL_II_ALWAYS_INLINE void
-        add_columns(const double *a, const double *x)
+        add(const double *a, const TwoPairs &x)
         {
-          lower += pair(a) * Pair{x[0], x[0]};
-          upper += pair(a + 2) * Pair{x[1], x[1]};
+          lower += pair(a) * x.lower;
+          upper += pair(a + 2) * x.upper;
         }
 
         inline DEAL_II_ALWAYS_INLINE void
@@ -55,6 +53,20 @@ namespace Friction
           return lower + upper;
         }
 
+        inline DEAL_II_ALWAYS_INLINE Pair
+        sums_of_pairs() const
+        {
+          return __builtin_shufflevector(lower, upper, 0, 2) +
+            __builtin_shufflevector(lower, upper, 1, 3);
+        }
+
+        inline DEAL_II_ALWAYS_INLINE void
+        add_to(double *sums) const
+        {
+          *reinterpret_cast<PairInMemory *>(sums) += lower;
+          *reinterpret_cast<PairInMemory *>(sums + 2) += upper;
+        }
+
         inline DEAL_II_ALWAYS_INLINE double
         operator[](const unsigned int i) const
         {
@@ -67,17 +79,17 @@ namespace Friction
       {
         Quad all = {0., 0., 0., 0.};
 
-        inline DEAL_II_ALWAYS_INLINE void
-        add(const double *a, const double x)
-        {
-          all += *reinterpret_cast<const QuadInMemory *>(a) * Quad{x, x, x, x};
-        }
+        OneQuad() = default;
+
+        inline DEAL_II_ALWAYS_INLINE
+        OneQuad(const Pair lower, const Pair upper)
+          : all(__builtin_shufflevector(lower, upper, 0, 1, 2, 3))
+        {}
 
         inline DEAL_II_ALWAYS_INLINE void
-        add_columns(const double *a, const double *x)
+        add(const double *a, const OneQuad &x)
         {
-          all += *reinterpret_cast<const QuadInMemory *>(a) *
-            __builtin_shufflevector(pair(x), pair(x), 0, 0, 1, 1);
+          all += *reinterpret_cast<const QuadInMemory *>(a) * x.all;
         }
 
         inline DEAL_II_ALWAYS_INLINE void
@@ -93,6 +105,19 @@ namespace Friction
             __builtin_shufflevector(all, all, 2, 3);
         }
 
+        inline DEAL_II_ALWAYS_INLINE Pair
+        sums_of_pairs() const
+        {
+          return __builtin_shufflevector(all, all, 0, 2) +
+            __builtin_shufflevector(all, all, 1, 3);
+        }
+
+        inline DEAL_II_ALWAYS_INLINE void
+        add_to(double *sums) const
+        {
+          *reinterpret_cast<QuadInMemory *>(sums) += all;
+        }
+
         inline DEAL_II_ALWAYS_INLINE double
         operator[](const unsigned int i) const
         {
@@ -102,37 +127,38 @@ namespace Friction
 
 
 
-      // A sum of blocks times values. In two dimensions both columns of a block
+      // A sum of blocks times values. Blocks are stored row by row; the
+      // products of a row are added up in the end. In two dimensions both rows
       // are one vector.
       template <int dim, typename Four>
       struct Sum
       {
-        Four columns;
+        Four rows;
 
         inline DEAL_II_ALWAYS_INLINE void
         add(const double *block, const double *x)
         {
-          columns.add_columns(block, x);
+          rows.add(block, Four(pair(x), pair(x)));
         }
 
         inline DEAL_II_ALWAYS_INLINE void
         operator+=(const Sum &other)
         {
-          columns += other.columns;
+          rows += other.rows;
         }
 
-        inline DEAL_II_ALWAYS_INLINE double
-        operator[](const unsigned int row) const
+        inline DEAL_II_ALWAYS_INLINE void
+        get(double *result) const
         {
-          return columns[row] + columns[2 + row];
+          *reinterpret_cast<PairInMemory *>(result) = rows.sums_of_pairs();
         }
       };
 
-      // In three dimensions a vector is a column and one number too many, which
-      // is calculated in vain: the next column's first for the first two, the
-      // one before it for the third, so that nothing outside of the block is
-      // touched. With four numbers stored per column it would be no faster, and
-      // there would be more to read.
+      // In three dimensions a vector is a row and one number too many, the next
+      // row's first, which is multiplied by zero. The last row of the last
+      // block needs a number in memory behind it, see NodeBlockMatrix. With
+      // four numbers stored per row it would be no faster, and there would be
+      // more to read.
       template <typename Four>
       struct Sum<3, Four>
       {
@@ -141,9 +167,10 @@ namespace Friction
         inline DEAL_II_ALWAYS_INLINE void
         add(const double *block, const double *x)
         {
-          first.add(block, x[0]);
-          second.add(block + 3, x[1]);
-          third.add(block + 5, x[2]);
+          const Four value(pair(x), Pair{x[2], 0.});
+          first.add(block, value);
+          second.add(block + 3, value);
+          third.add(block + 6, value);
         }
 
         inline DEAL_II_ALWAYS_INLINE void
@@ -154,11 +181,68 @@ namespace Friction
           third += other.third;
         }
 
-        inline DEAL_II_ALWAYS_INLINE double
-        operator[](const unsigned int row) const
+        inline DEAL_II_ALWAYS_INLINE void
+        get(double *result) const
         {
-          return first[row] + second[row] + third[1 + row];
+          result[0] = (first[0] + first[1]) + first[2];
+          result[1] = (second[0] + second[1]) + second[2];
+          result[2] = (third[0] + third[1]) + third[2];
         }
+      };
+
+
+
+      // A value of a node, by which transposed blocks are multiplied, and what
+      // that adds to the sums of other rows: rows of a block times a number
+      // each.
+      template <typename Four>
+      struct FromLeft
+      {
+        Four first, second, third;
+
+        inline DEAL_II_ALWAYS_INLINE
+        FromLeft(const double *x)
+          : first(Pair{x[0], x[0]}, Pair{x[0], x[0]})
+          , second(Pair{x[1], x[1]}, Pair{x[1], x[1]})
+          , third(Pair{x[2], x[2]}, Pair{x[2], x[2]})
+        {}
+
+        inline DEAL_II_ALWAYS_INLINE void
+        add(const double *block, double *sums) const
+        {
+          Four products;
+          products.add(block, first);
+          products.add(block + 3, second);
+          products.add(block + 6, third);
+          products.add_to(sums);
+        }
+      };
+
+
+
+      inline DEAL_II_ALWAYS_INLINE void
+      clear(double *sums)
+      {
+        for (unsigned int i = 0; i < n_partial_sums; ++i)
+          sums[i] = 0.;
+      }
+
+
+
+      // Blocks stored with a row: the diagonal one, and how many there are.
+      template <int dim>
+      struct StoredRow
+      {
+        std::size_t         n;
+        const unsigned int *columns;
+        const double       *blocks;
+
+        inline DEAL_II_ALWAYS_INLINE
+        StoredRow(const BlockRows<dim> &A, const std::size_t row)
+          : n(A.stored_starts[row + 1] - A.stored_starts[row])
+          , columns(A.columns + A.starts[row])
+          , blocks(A.blocks + dim * dim * A.stored_starts[row])
+        {}
       };
 
 
@@ -169,14 +253,14 @@ namespace Friction
       template <int step, int dim, typename Four>
       inline DEAL_II_ALWAYS_INLINE void
       add_blocks(Sum<dim, Four>       &sum,
-                 const BlockRows<dim> &A,
+                 const StoredRow<dim> &row,
                  const std::size_t     first,
                  std::size_t           n,
                  const double         *x)
       {
         constexpr int       size   = dim * dim;
-        const unsigned int *column = A.columns + first;
-        const double       *block  = A.blocks + size * first;
+        const unsigned int *column = row.columns + first;
+        const double       *block  = row.blocks + size * first;
         Sum<dim, Four>      other;
         for (; n > 1; n -= 2)
           {
@@ -193,20 +277,55 @@ namespace Friction
 
 
 
+      // What a row adds to the sums of others. To the right of the diagonal
+      // other processes' columns come last.
+      template <int dim, typename Four>
+      inline DEAL_II_ALWAYS_INLINE void
+      add_share_body(const BlockRows<dim> &A,
+                     const StoredRow<dim> &row,
+                     const double         *value,
+                     const LeftSums       &left)
+      {
+        if constexpr (stores_half<dim>)
+          if (left.add)
+            {
+              const FromLeft<Four> from_left(value);
+              for (std::size_t k = 1; k < row.n && row.columns[k] < A.n_rows;
+                   ++k)
+                from_left.add(row.blocks + dim * dim * k,
+                              left.sums +
+                                n_partial_sums *
+                                  static_cast<std::size_t>(row.columns[k]));
+            }
+      }
+
+      // What others have added to it, which is to be cleared or not.
+      template <int dim>
+      inline DEAL_II_ALWAYS_INLINE void
+      take_sums(const std::size_t row, const LeftSums &left, double *product)
+      {
+        if constexpr (stores_half<dim>)
+          {
+            double *sums = left.sums + n_partial_sums * row;
+            for (int d = 0; d < dim; ++d)
+              product[d] += sums[d];
+            if (left.clear)
+              clear(sums);
+          }
+      }
+
+
+
+      // The diagonal block comes in the end, when the others are under way.
       template <int dim, typename Four, int step>
       inline DEAL_II_ALWAYS_INLINE void
-      times_in_steps(const BlockRows<dim> &A,
-                     const unsigned int    row,
-                     const double         *x,
-                     double               *product)
+      add_row(Sum<dim, Four>       &sum,
+              const StoredRow<dim> &row,
+              const double         *x,
+              const double         *xi)
       {
-        const std::size_t begin = A.starts[row], end = A.starts[row + 1];
-        const std::size_t n     = end - begin;
-        const std::size_t first = (step > 0 || n == 0) ? begin : end - 1;
-        Sum<dim, Four>    sum;
-        add_blocks<step>(sum, A, first, n, x);
-        for (int d = 0; d < dim; ++d)
-          product[d] = sum[d];
+        add_blocks<step>(sum, row, step > 0 ? 1 : row.n - 1, row.n - 1, x);
+        sum.add(row.blocks, xi);
       }
 
 
@@ -219,14 +338,51 @@ namespace Friction
                  const bool            backwards,
                  double               *product)
       {
-        if (backwards)
-          times_in_steps<dim, Four, -1>(A, row, x, product);
-        else
-          times_in_steps<dim, Four, 1>(A, row, x, product);
+        const StoredRow<dim> blocks(A, row);
+        Sum<dim, Four>       sum;
+        if (blocks.n > 0)
+          {
+            const double *xi = x + dim * static_cast<std::size_t>(row);
+            if (backwards)
+              add_row<dim, Four, -1>(sum, blocks, x, xi);
+            else
+              add_row<dim, Four, 1>(sum, blocks, x, xi);
+          }
+        sum.get(product);
       }
 
 
 
+      template <int dim, typename Four>
+      inline DEAL_II_ALWAYS_INLINE void
+      pass_body(const BlockRows<dim> &matrix,
+                const RowLoop        &loop,
+                const double         *x)
+      {
+        const BlockRows<dim> A     = matrix;
+        Prefetch             fetch = loop.prefetch;
+        // What a row adds goes to rows that have been passed already, if
+        // backwards, or will be.
+        for (unsigned int n = loop.rows.first; n < loop.rows.second; ++n)
+          {
+            const std::size_t i =
+              loop.backwards ? loop.rows.second - 1 - (n - loop.rows.first) : n;
+            fetch.step();
+            if (loop.left.clear)
+              clear(loop.left.sums + n_partial_sums * i);
+            const double *xi      = x + dim * i;
+            bool          is_zero = true;
+            for (int d = 0; d < dim; ++d)
+              is_zero = is_zero && xi[d] == 0.;
+            if (!is_zero)
+              add_share_body<dim, Four>(A, StoredRow<dim>(A, i), xi, loop.left);
+          }
+        loop.prefetch = fetch;
+      }
+
+
+
+      // With b, b - A x, and without A x.
       template <int dim, typename Four>
       inline DEAL_II_ALWAYS_INLINE void
       residual_body(const BlockRows<dim> &matrix,
@@ -236,15 +392,24 @@ namespace Friction
                     const double         *x)
       {
         const BlockRows<dim> A     = matrix;
-        const RowRange       rows  = loop.rows;
         Prefetch             fetch = loop.prefetch;
-        for (unsigned int i = rows.first; i < rows.second; ++i)
+        for (std::size_t i = loop.rows.first; i < loop.rows.second; ++i)
           {
             fetch.step();
+            const StoredRow<dim> row(A, i);
+            const double        *xi = x + dim * i;
+            Sum<dim, Four>       sum;
+            if (row.n > 0)
+              {
+                add_row<dim, Four, 1>(sum, row, x, xi);
+                add_share_body<dim, Four>(A, row, xi, loop.left);
+              }
             double product[dim];
-            times_in_steps<dim, Four, 1>(A, i, x, product);
+            sum.get(product);
+            take_sums<dim>(i, loop.left, product);
             for (int d = 0; d < dim; ++d)
-              r[dim * i + d] = b[dim * i + d] - product[d];
+              r[dim * i + d] =
+                b != nullptr ? b[dim * i + d] - product[d] : product[d];
           }
         loop.prefetch = fetch;
       }
@@ -253,46 +418,46 @@ namespace Friction
 
       // In a row's order, see NodePattern, the diagonal block comes first, then
       // larger numbers, those of other processes last, and then smaller ones,
-      // which are not read. What the processor would foresee is the next
-      // memory, half of which is of no use, so that it is told which comes
-      // next.
+      // which are not read, if they are stored. What the processor would
+      // foresee then is the next memory, half of which is of no use, so that it
+      // is told which comes next.
       template <int dim, typename Four>
       inline DEAL_II_ALWAYS_INLINE double
-      energy_body(const BlockRows<dim> &matrix,
-                  const unsigned int    n_rows,
-                  const double         *x)
+      energy_body(const BlockRows<dim> &matrix, const double *x)
       {
         constexpr unsigned int size = dim * dim, ahead = 4;
         const BlockRows<dim>   A   = matrix;
         double                 sum = 0.;
-        for (unsigned int i = 0; i < n_rows; ++i)
+        for (std::size_t i = 0; i < A.n_rows; ++i)
           {
-            if (i + ahead < n_rows)
+            if (!stores_half<dim> && i + ahead < A.n_rows)
               {
-                const std::size_t   next  = A.starts[i + ahead];
-                const std::size_t   n     = A.starts[i + ahead + 1] - next;
-                const double       *first = A.blocks + size * next,
-                             *const last  = first + size * (n / 2 + 1);
+                const StoredRow<dim> next(A, i + ahead);
+                const double        *first = next.blocks,
+                             *const  last  = first + size * (next.n / 2 + 1);
                 for (; first < last; first += 8)
                   __builtin_prefetch(first);
               }
-            const std::size_t begin = A.starts[i], end = A.starts[i + 1];
-            if (begin == end)
+            const StoredRow<dim> row(A, i);
+            if (row.n == 0)
               continue;
-            std::size_t larger = begin + 1;
-            while (larger < end && A.columns[larger] - i < n_rows - i)
+            std::size_t larger = 1;
+            while (larger < row.n && row.columns[larger] - i < A.n_rows - i)
               ++larger;
             std::size_t ghosts = larger;
-            while (ghosts < end && A.columns[ghosts] >= n_rows)
+            while (ghosts < row.n && row.columns[ghosts] >= A.n_rows)
               ++ghosts;
 
-            const double  *xi = x + dim * static_cast<std::size_t>(i);
+            const double  *xi = x + dim * i;
             Sum<dim, Four> twice, once;
-            add_blocks<1>(twice, A, begin + 1, larger - begin - 1, x);
-            once.add(A.blocks + dim * dim * begin, xi);
-            add_blocks<1>(once, A, larger, ghosts - larger, x);
+            add_blocks<1>(twice, row, 1, larger - 1, x);
+            once.add(row.blocks, xi);
+            add_blocks<1>(once, row, larger, ghosts - larger, x);
+            double products[2][dim];
+            twice.get(products[0]);
+            once.get(products[1]);
             for (int d = 0; d < dim; ++d)
-              sum += xi[d] * (2. * twice[d] + once[d]);
+              sum += xi[d] * (2. * products[0][d] + products[1][d]);
           }
         return sum;
       }
@@ -301,9 +466,10 @@ namespace Friction
 
       // Rows are read from front to back or from back to front, like the
       // matrix: processors foresee what is read next, as long as it goes on in
-      // one direction. In a row's order, see NodePattern, the node that has
-      // just been relaxed comes last in either direction; so the processor
-      // can begin with a row while it is not yet through with the one before.
+      // one direction. The node that has just been relaxed comes last in either
+      // direction: in the order of the row, see NodePattern, or in the sums of
+      // the left. So the processor can begin with a row while it is not yet
+      // through with the one before.
       //
       // In two dimensions rows are so short that this is not enough. There the
       // last block is multiplied by the inverse beforehand: from one relaxed
@@ -321,44 +487,43 @@ namespace Friction
         constexpr int        size      = dim * dim;
         const BlockRows<dim> A         = matrix;
         const RowRange       rows      = loop.rows;
+        const LeftSums       left      = loop.left;
         Prefetch             fetch     = loop.prefetch;
         std::size_t          i = backwards ? rows.second - 1 : rows.first;
         for (unsigned int n = rows.second - rows.first; n > 0; --n, i += step)
           {
             fetch.step();
-            const std::size_t begin = A.starts[i], end = A.starts[i + 1];
-            if (begin == end)
+            const StoredRow<dim> row(A, i);
+            if (row.n == 0)
               continue;
-            double       *xi      = x + dim * i;
-            const double *bi      = b + dim * i;
-            const double *inverse = inverses[i].data();
-
-            // The others, but for the last one, and then the diagonal.
-            const std::size_t n_others = end - begin - 1;
-            const bool        has_last = (dim == 2 && n_others > 0);
-            const std::size_t first    = backwards ? end - 1 : begin + 1,
-                              last     = backwards ? begin + 1 : end - 1;
+            double        *xi      = x + dim * i;
+            const double  *bi      = b + dim * i;
+            const double  *inverse = inverses[i].data();
             Sum<dim, Four> sum;
-            add_blocks<step>(sum, A, first, n_others - has_last, x);
-            sum.add(A.blocks + size * begin, xi);
-
             if constexpr (dim == 2)
               {
+                // The others, but for the last one, and then the diagonal.
+                const bool        has_last = (row.n > 1);
+                const std::size_t first    = backwards ? row.n - 1 : 1,
+                                  last     = backwards ? 1 : row.n - 1;
+                add_blocks<step>(sum, row, first, row.n - 1 - has_last, x);
+                sum.add(row.blocks, xi);
+
                 const Pair inverse0 = pair(inverse),
                            inverse1 = pair(inverse + 2);
-                const Pair defect   = pair(bi) - sum.columns.sum_of_halves();
+                const Pair defect   = pair(bi) - sum.rows.sums_of_pairs();
                 Pair       value    = pair(xi) +
                   (inverse0 * Pair{defect[0], defect[0]} +
                    inverse1 * Pair{defect[1], defect[1]});
                 if (has_last)
                   {
-                    const double *block = A.blocks + size * last;
+                    const double *block = row.blocks + size * last;
                     const Pair column0  = inverse0 * Pair{block[0], block[0]} +
-                      inverse1 * Pair{block[1], block[1]};
-                    const Pair column1 = inverse0 * Pair{block[2], block[2]} +
+                      inverse1 * Pair{block[2], block[2]};
+                    const Pair column1 = inverse0 * Pair{block[1], block[1]} +
                       inverse1 * Pair{block[3], block[3]};
-                    const Pair other =
-                      pair(x + dim * static_cast<std::size_t>(A.columns[last]));
+                    const Pair other = pair(
+                      x + dim * static_cast<std::size_t>(row.columns[last]));
                     value = (value - column0 * Pair{other[0], other[0]}) -
                       column1 * Pair{other[1], other[1]};
                   }
@@ -366,13 +531,20 @@ namespace Friction
               }
             else
               {
-                double defect[dim];
+                add_row<dim, Four, step>(sum, row, x, xi);
+                double product[dim], defect[dim];
+                sum.get(product);
+                take_sums<dim>(i, left, product);
                 for (int d = 0; d < dim; ++d)
-                  defect[d] = bi[d] - sum[d];
-                Sum<dim, Four> correction;
-                correction.add(inverse, defect);
-                for (int d = 0; d < dim; ++d)
-                  xi[d] += correction[d];
+                  defect[d] = bi[d] - product[d];
+                // Two numbers at a time, as they are read by the next row.
+                *reinterpret_cast<PairInMemory *>(xi) = pair(xi) +
+                  ((pair(inverse) * Pair{defect[0], defect[0]} +
+                    pair(inverse + 3) * Pair{defect[1], defect[1]}) +
+                   pair(inverse + 6) * Pair{defect[2], defect[2]});
+                xi[2] += (inverse[2] * defect[0] + inverse[5] * defect[1]) +
+                  inverse[8] * defect[2];
+                add_share_body<dim, Four>(A, row, xi, left);
               }
           }
         loop.prefetch = fetch;
@@ -396,6 +568,24 @@ namespace Friction
 
       template <int dim>
       FRICTION_AVX2 void
+      pass_avx2(const BlockRows<dim> &A, const RowLoop &loop, const double *x)
+      {
+        pass_body<dim, OneQuad>(A, loop, x);
+      }
+
+      template <int dim>
+      FRICTION_AVX2 void
+      add_share_avx2(const BlockRows<dim> &A,
+                     const unsigned int    row,
+                     const double         *x,
+                     const LeftSums       &left)
+      {
+        add_share_body<dim, OneQuad>(
+          A, StoredRow<dim>(A, row), x + dim * std::size_t(row), left);
+      }
+
+      template <int dim>
+      FRICTION_AVX2 void
       residual_avx2(const BlockRows<dim> &A,
                     const RowLoop        &loop,
                     double               *r,
@@ -407,11 +597,9 @@ namespace Friction
 
       template <int dim>
       FRICTION_AVX2 double
-      energy_avx2(const BlockRows<dim> &A,
-                  const unsigned int    n_rows,
-                  const double         *x)
+      energy_avx2(const BlockRows<dim> &A, const double *x)
       {
-        return energy_body<dim, OneQuad>(A, n_rows, x);
+        return energy_body<dim, OneQuad>(A, x);
       }
 
       template <int dim>
@@ -452,6 +640,66 @@ namespace Friction
 
 
     template <int dim>
+    NodeValue<dim>
+    times(const BlockRows<dim> &A,
+          const unsigned int    row,
+          const double         *x,
+          const bool            backwards,
+          const LeftSums       &left)
+    {
+      NodeValue<dim> product = times<dim>(A, row, x, backwards);
+      take_sums<dim>(row, left, product.data());
+      return product;
+    }
+
+
+
+    template <int dim>
+    void
+    pass(const BlockRows<dim> &A, const RowLoop &loop, const double *x)
+    {
+      if (!stores_half<dim>)
+        return;
+#ifdef FRICTION_AVX2
+      if (instructions_in_use == Instructions::avx2)
+        return pass_avx2<dim>(A, loop, x);
+#endif
+      pass_body<dim, TwoPairs>(A, loop, x);
+    }
+
+
+
+    template <int dim>
+    void
+    add_share(const BlockRows<dim> &A,
+              const unsigned int    row,
+              const double         *x,
+              const LeftSums       &left)
+    {
+      if (!stores_half<dim>)
+        return;
+#ifdef FRICTION_AVX2
+      if (instructions_in_use == Instructions::avx2)
+        return add_share_avx2<dim>(A, row, x, left);
+#endif
+      add_share_body<dim, TwoPairs>(
+        A, StoredRow<dim>(A, row), x + dim * std::size_t(row), left);
+    }
+
+
+
+    template <int dim>
+    void
+    product(const BlockRows<dim> &A, double *y, const double *x, double *sums)
+    {
+      Prefetch nothing;
+      residual<dim>(
+        A, {{0, A.n_rows}, false, nothing, {sums, true, true}}, y, nullptr, x);
+    }
+
+
+
+    template <int dim>
     void
     residual(const BlockRows<dim> &A,
              const RowLoop        &loop,
@@ -470,13 +718,13 @@ namespace Friction
 
     template <int dim>
     double
-    energy(const BlockRows<dim> &A, const unsigned int n_rows, const double *x)
+    energy(const BlockRows<dim> &A, const double *x)
     {
 #ifdef FRICTION_AVX2
       if (instructions_in_use == Instructions::avx2)
-        return energy_avx2<dim>(A, n_rows, x);
+        return energy_avx2<dim>(A, x);
 #endif
-      return energy_body<dim, TwoPairs>(A, n_rows, x);
+      return energy_body<dim, TwoPairs>(A, x);
     }
 
 
@@ -501,37 +749,35 @@ namespace Friction
 
 
 
-    template NodeValue<2> times<2>(const BlockRows<2> &,
-                                   const unsigned int,
-                                   const double *,
-                                   const bool);
-    template void         residual<2>(const BlockRows<2> &,
-                              const RowLoop &,
-                              double *,
-                              const double *,
-                              const double *);
-    template double
-    energy<2>(const BlockRows<2> &, const unsigned int, const double *);
-    template void         relax<2>(const BlockRows<2> &,
-                           const NodeBlock<2> *,
-                           const RowLoop &,
-                           const double *,
+#define INSTANTIATE(dim)                                                     \
+  template NodeValue<dim> times<dim>(                                        \
+    const BlockRows<dim> &, const unsigned int, const double *, const bool); \
+  template NodeValue<dim> times<dim>(const BlockRows<dim> &,                 \
+                                     const unsigned int,                     \
+                                     const double *,                         \
+                                     const bool,                             \
+                                     const LeftSums &);                      \
+  template void           pass<dim>(                                         \
+    const BlockRows<dim> &, const RowLoop &, const double *);      \
+  template void add_share<dim>(const BlockRows<dim> &,                       \
+                               const unsigned int,                           \
+                               const double *,                               \
+                               const LeftSums &);                            \
+  template void product<dim>(                                                \
+    const BlockRows<dim> &, double *, const double *, double *);             \
+  template void   residual<dim>(const BlockRows<dim> &,                      \
+                              const RowLoop &,                             \
+                              double *,                                    \
+                              const double *,                              \
+                              const double *);                             \
+  template double energy<dim>(const BlockRows<dim> &, const double *);       \
+  template void   relax<dim>(const BlockRows<dim> &,                         \
+                           const NodeBlock<dim> *,                         \
+                           const RowLoop &,                                \
+                           const double *,                                 \
                            double *);
-    template NodeValue<3> times<3>(const BlockRows<3> &,
-                                   const unsigned int,
-                                   const double *,
-                                   const bool);
-    template void         residual<3>(const BlockRows<3> &,
-                              const RowLoop &,
-                              double *,
-                              const double *,
-                              const double *);
-    template double
-    energy<3>(const BlockRows<3> &, const unsigned int, const double *);
-    template void relax<3>(const BlockRows<3> &,
-                           const NodeBlock<3> *,
-                           const RowLoop &,
-                           const double *,
-                           double *);
+    INSTANTIATE(2)
+    INSTANTIATE(3)
+#undef INSTANTIATE
   } // namespace RowKernels
 } // namespace Friction

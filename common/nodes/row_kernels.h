@@ -12,13 +12,16 @@ namespace Friction
   /** Rows first, ..., second-1 of a matrix. */
   using RowRange = std::pair<unsigned int, unsigned int>;
 
-  /** The rows of a NodeBlockMatrix, as its innermost loops see them. */
+  /** The rows of a NodeBlockMatrix, as its innermost loops see them: blocks are
+   * stored row by row, and there is one number more behind the last. */
   template <int dim>
   struct BlockRows
   {
     const std::size_t  *starts;
+    const std::size_t  *stored_starts;
     const unsigned int *columns;
     const double       *blocks;
+    unsigned int        n_rows;
   };
 
 
@@ -59,21 +62,61 @@ namespace Friction
 
 
 
-  /** The loops that a solution spends its time in, compiled for several
-   * sets of Instructions. */
+  /**
+   * Of a symmetric matrix one half will do: each row has its diagonal and what
+   * is to the right of it. The rest is added up in passing. When a loop in
+   * ascending order has come to a row, with or without changing the value of
+   * its node, it adds its blocks, transposed, times that value to sums that
+   * belong to the rows with larger numbers. When it gets there, it finds
+   * complete what is to the left of the diagonal: with the new values of a
+   * sweep, as Gauss-Seidel wants them. In descending order it is to the left
+   * that old values are wanted, and these sums are those that the sweep before
+   * has left behind, see SweepSchedule. So each block is read once and used
+   * twice.
+   *
+   * In three dimensions a sweep waits for memory, and this makes it twice as
+   * fast. In two, blocks are as small as the sums that they are added to: what
+   * is saved in reading is spent on these, and sweeps are no faster in large
+   * matrices and by a third slower in small ones. There, all blocks are stored.
+   */
+  template <int dim>
+  constexpr bool stores_half = (dim == 3);
+
+
+
+  /** The loops that a solution spends its time in, compiled for several sets of
+   * Instructions. */
   namespace RowKernels
   {
-    /** The rows that a kernel goes through, in which direction, and what it has
-     * brought into the cache meanwhile. */
+    /** Numbers per row in the sums of the left, where there are such; the
+     * fourth one means nothing. */
+    constexpr unsigned int n_partial_sums = 4;
+
+    /** What a loop does with the sums of the left of the diagonal, where half
+     * of a matrix is stored. */
+    struct LeftSums
+    {
+      double *sums;
+
+      /// Those of a row, once they have been used, are set to zero.
+      bool clear;
+
+      /// The share of each row is added to those of others.
+      bool add;
+    };
+
+    /** The rows that a kernel goes through, in which direction, what it has
+     * brought into the cache meanwhile, and what becomes of sums. */
     struct RowLoop
     {
       RowRange  rows;
       bool      backwards;
       Prefetch &prefetch;
+      LeftSums  left;
     };
 
     /**
-     * The value of row @p row of the product A x.
+     * What is stored of row @p row of A, times x.
      * @param backwards  whether the caller takes rows in descending order and
      *                   changes the value of each: the sum then ends with
      *                   the values that were changed last, so that the
@@ -84,7 +127,34 @@ namespace Friction
     NodeValue<dim> times(const BlockRows<dim> &A,
                          const unsigned int    row,
                          const double         *x,
-                         const bool            backwards = false);
+                         const bool            backwards);
+
+    /** Row @p row of A x, with the sums of its left, which are cleared if they
+     * are to be. */
+    template <int dim>
+    NodeValue<dim> times(const BlockRows<dim> &A,
+                         const unsigned int    row,
+                         const double         *x,
+                         const bool            backwards,
+                         const LeftSums       &left);
+
+    /** Adds the share of rows in the sums of others, if it is to be, and
+     * clears their own, if these are to be: what is to be done with rows whose
+     * values do not change. */
+    template <int dim>
+    void pass(const BlockRows<dim> &A, const RowLoop &loop, const double *x);
+
+    /** Adds the share of one row in the sums of others, if it is to be. */
+    template <int dim>
+    void add_share(const BlockRows<dim> &A,
+                   const unsigned int    row,
+                   const double         *x,
+                   const LeftSums       &left);
+
+    /** y = A x for all rows; @p sums are zero, and are on return. */
+    template <int dim>
+    void
+    product(const BlockRows<dim> &A, double *y, const double *x, double *sums);
 
     /** r = b - A x for some rows, forwards in any case. */
     template <int dim>
@@ -95,15 +165,13 @@ namespace Friction
                   const double         *x);
 
     /**
-     * What the first @p n_rows rows of a symmetric matrix have in $x^TAx$:
-     * their diagonal blocks once, their couplings to rows with larger numbers
-     * twice, and those to columns from @p n_rows on, the rows of other
-     * processes, once. Over all processes this is the whole product, and only
-     * half of the matrix has been read.
+     * What the rows of a symmetric matrix have in $x^TAx$: their diagonal
+     * blocks once, their couplings to rows with larger numbers twice, and those
+     * to columns beyond the rows, which belong to other processes, once. Over
+     * all processes this is the whole product.
      */
     template <int dim>
-    double
-    energy(const BlockRows<dim> &A, const unsigned int n_rows, const double *x);
+    double energy(const BlockRows<dim> &A, const double *x);
 
     /**
      * Gauss-Seidel for some rows: solves the equations of each row for the

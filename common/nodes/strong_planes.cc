@@ -22,9 +22,11 @@ namespace Friction
 
     template <int dim>
     double
-    strength(const NodeBlockMatrix<dim> &A, const std::size_t position)
+    strength(const NodeBlockMatrix<dim> &A,
+             const unsigned int          row,
+             const std::size_t           position)
     {
-      return -trace<dim>(A.block(position));
+      return -A.trace_of(row, position);
     }
 
 
@@ -36,7 +38,7 @@ namespace Friction
     {
       double strongest = 0.;
       for (std::size_t e = A.row_begin(row) + 1; e < A.row_end(row); ++e)
-        strongest = std::max(strongest, strength(A, e));
+        strongest = std::max(strongest, strength(A, row, e));
       return least_strength * strongest;
     }
 
@@ -88,10 +90,10 @@ namespace Friction
         if (is_strong(e))
           {
             ++n;
-            sum += strength(A, e);
+            sum += strength(A, row, e);
           }
       return n > 0 && 2 * n < A.row_end(row) - A.row_begin(row) &&
-        sum >= strong_share * trace<dim>(A.block(A.row_begin(row)));
+        sum >= strong_share * trace<dim>(A.diagonal(row));
     }
 
 
@@ -114,7 +116,7 @@ namespace Friction
         if (is_strong(e) && A.column(e) < A.n_rows())
           {
             const Eigen::Vector3d d = direction(e);
-            moment += strength(A, e) * d * d.transpose();
+            moment += strength(A, row, e) * d * d.transpose();
           }
       if (exceed(moment, largest_variance * moment.trace()))
         return false;
@@ -122,12 +124,11 @@ namespace Friction
 
       double in_plane = 0.;
       for (std::size_t e = A.row_begin(row) + 1; e < A.row_end(row); ++e)
-        if (strength(A, e) > 0. &&
+        if (strength(A, row, e) > 0. &&
             (A.column(e) >= A.n_rows() ? is_strong(e)
                                        : is_flat(normal, direction(e))))
-          in_plane += strength(A, e);
-      return in_plane >=
-        share_of_diagonal * trace<dim>(A.block(A.row_begin(row)));
+          in_plane += strength(A, row, e);
+      return in_plane >= share_of_diagonal * trace<dim>(A.diagonal(row));
     }
 
 
@@ -142,7 +143,7 @@ namespace Friction
     {
       const double weakest   = weakest_of(A, row);
       const auto   is_strong = [&](const std::size_t e) {
-        return strength(A, e) >= weakest;
+        return strength(A, row, e) >= weakest;
       };
       return weakest > 0. && has_few_strong(A, row, is_strong) &&
         find_normal(A, row, is_strong, positions, normal);
@@ -157,7 +158,7 @@ namespace Friction
   {
     const double weakest = weakest_of(A, row);
     return weakest > 0. && has_few_strong(A, row, [&](const std::size_t e) {
-             return strength(A, e) >= weakest;
+             return strength(A, row, e) >= weakest;
            });
   }
 
@@ -177,7 +178,7 @@ namespace Friction
       {
         const unsigned int j = A.column(e);
         Eigen::Vector3d    another;
-        if (j < A.n_rows() && strength(A, e) >= weakest &&
+        if (j < A.n_rows() && strength(A, row, e) >= weakest &&
             is_flat(normal, unit_direction(positions[row], positions[j])) &&
             find_normal(A, j, positions, another))
           return true;
@@ -200,8 +201,8 @@ namespace Friction
     // Of couplings to nodes of other processes the row's opinion has to do.
     const auto is_strong = [&](const unsigned int i, const std::size_t e) {
       const unsigned int j = A.column(e);
-      return weakest[i] > 0. && strength(A, e) >= weakest[i] &&
-        (j >= n || strength(A, e) >= weakest[j]);
+      return weakest[i] > 0. && strength(A, i, e) >= weakest[i] &&
+        (j >= n || strength(A, i, e) >= weakest[j]);
     };
 
     std::vector<char>            is_left(n, false);

@@ -13,15 +13,26 @@ namespace Friction
       chunk_starts.push_back(start);
     chunk_starts.push_back(n_nodes);
 
-    ranges.resize(n_chunks());
-    for (const auto &range : nodes)
-      for (unsigned int begin = range.first; begin < range.second;)
-        {
-          const unsigned int c   = chunk_of(begin);
-          const unsigned int end = std::min(range.second, chunk_starts[c + 1]);
-          ranges[c].emplace_back(begin, end);
-          begin = end;
-        }
+    parts_of_chunk.resize(n_chunks());
+    const auto add =
+      [&](unsigned int begin, const unsigned int end, const bool is_relaxed) {
+        while (begin < end)
+          {
+            const unsigned int c    = chunk_of(begin);
+            const unsigned int stop = std::min(end, chunk_starts[c + 1]);
+            parts_of_chunk[c].push_back({{begin, stop}, is_relaxed});
+            begin = stop;
+          }
+      };
+    unsigned int done = 0;
+    for (const RowRange &range : nodes)
+      {
+        add(done, range.first, false);
+        add(range.first, range.second, true);
+        done             = range.second;
+        nothing_to_relax = false;
+      }
+    add(done, n_nodes, false);
 
     at_interface.assign(n_chunks(), 0);
     reach_up.resize(n_chunks());

@@ -16,6 +16,35 @@ namespace Friction
     bool         backwards;
   };
 
+  /** How many nodes a sweep takes at once. */
+  constexpr unsigned int nodes_per_chunk = 128;
+
+
+
+  /** What a stage of sweeps has to do. */
+  struct Stage
+  {
+    enum Kind
+    {
+      adds_shares,
+      relaxes,
+      computes_residual
+    };
+    Kind         kind;
+    unsigned int sweep; ///< which one, if it relaxes
+    unsigned int chunk;
+
+    /// The sums of a row are needed once more if only the residual follows a
+    /// sweep forwards: there the left of the diagonal does not change any more.
+    bool clears;
+
+    /// Sweeps forwards need the shares of their own rows, those backwards those
+    /// of the stage before.
+    bool adds;
+  };
+
+
+
   /**
    * Runs several relaxation sweeps through a matrix while reading it from
    * memory only once.
@@ -49,15 +78,17 @@ namespace Friction
      * must be symmetric. */
     SweepSchedule(const NodeBlockMatrix<dim> &matrix,
                   const NodeRanges           &nodes,
-                  const unsigned int          chunk_size = 128);
+                  const unsigned int          chunk_size = nodes_per_chunk);
 
     /**
-     * Runs sweeps, and one more stage if @p with_residual is set, each over
-     * all chunks in ascending or descending order. That last stage is anything
-     * that reads neighbours and changes nothing.
-     * @param work    called as work(stage, chunk, ahead). While it works on the
-     *                chunk it should have the rows @p ahead brought into the
-     *                cache: its share of what the first stage needs next.
+     * Runs sweeps, each over all chunks in ascending or descending order, and
+     * stages that change nothing: before sweeps backwards, where half of the
+     * matrix is stored, one that adds up the shares of all rows in sums of
+     * others, see stores_half, and behind all sweeps, if @p with_residual is
+     * set, one more that reads neighbours.
+     * @param work    called as work(stage, ahead) with a Stage. While it works
+     *                on its chunk it should have the rows @p ahead brought into
+     *                the cache: its share of what the first stage needs next.
      * @param ghosts  exchanges what the sweeps change.
      * @param x       which has to have valid ghosts, and has on return.
      */
@@ -81,11 +112,25 @@ namespace Friction
       return {chunk_starts[c], chunk_starts[c + 1]};
     }
 
-    /** The nodes of a chunk that are to be swept over. */
-    const NodeRanges &
-    nodes(const unsigned int c) const
+    /** Rows of a chunk, to be swept over or not. */
+    struct Part
     {
-      return ranges[c];
+      RowRange rows;
+      bool     is_relaxed;
+    };
+
+    /** All rows of a chunk, in ascending order. */
+    const std::vector<Part> &
+    parts(const unsigned int c) const
+    {
+      return parts_of_chunk[c];
+    }
+
+    /** Whether there is anything to be swept over. */
+    bool
+    is_empty() const
+    {
+      return nothing_to_relax;
     }
 
     /** Which chunk a node is in. */
@@ -96,9 +141,10 @@ namespace Friction
     }
 
   private:
-    unsigned int              chunk_size = 1;
-    std::vector<unsigned int> chunk_starts;
-    std::vector<NodeRanges>   ranges;
+    unsigned int                   chunk_size = 1;
+    std::vector<unsigned int>      chunk_starts;
+    std::vector<std::vector<Part>> parts_of_chunk;
+    bool                           nothing_to_relax = true;
 
     // The last and the first chunk that a chunk, or one before (after) it,
     // couples to.
@@ -119,11 +165,32 @@ namespace Friction
                           GhostExchange &ghosts,
                           double        *x) const
   {
-    const bool                backwards = sweeps.backwards;
-    const unsigned int        n_sweeps  = sweeps.number;
-    const unsigned int        n         = n_chunks();
-    const unsigned int        n_stages  = n_sweeps + (with_residual ? 1 : 0);
+    const bool         backwards       = sweeps.backwards && sweeps.number > 0;
+    const unsigned int n               = n_chunks();
+    const unsigned int first           = backwards && stores_half<dim> ? 1 : 0,
+                       end             = first + sweeps.number;
+    const unsigned int        n_stages = end + (with_residual ? 1 : 0);
     std::vector<unsigned int> done(n_stages, 0);
+
+    const auto at = [&](const unsigned int stage, const unsigned int chunk) {
+      Stage result{Stage::relaxes, stage - first, chunk, true, true};
+      if (stage < first)
+        {
+          result.kind   = Stage::adds_shares;
+          result.clears = false;
+        }
+      else if (stage == end)
+        {
+          // With no sweep there is nothing that it could go by.
+          result.kind = Stage::computes_residual;
+          result.adds = (sweeps.number == 0);
+        }
+      else if (backwards)
+        result.adds = stage + 1 < end || with_residual;
+      else
+        result.clears = stage + 1 < end || !with_residual;
+      return result;
+    };
 
     // The number of the chunk that is c-th in the direction of the sweep.
     const auto chunk_at = [&](const unsigned int c) {
@@ -155,8 +222,9 @@ namespace Friction
         through = c + 1;
     const bool exchanges = !ghosts.is_empty();
     Assert(!exchanges || through > 0, ExcInternalError());
-    // Exchange number s follows sweep s; how many have begun, and ended.
-    unsigned int begun = 0, ended = 0;
+    // An exchange follows each sweep; before which stages they have begun, and
+    // ended.
+    unsigned int begun = first, ended = first;
 
     // A sweep that waits for its ghosts lets the first one run ahead, but not
     // so far that what lies between them no longer is in the cache.
@@ -177,9 +245,10 @@ namespace Friction
                 ghosts.finish(x);
                 ended = stage;
               }
-            work(stage, chunk_at(done[stage]), ahead(stage));
+            work(at(stage, chunk_at(done[stage])), ahead(stage));
             ++done[stage];
-            if (exchanges && stage < n_sweeps && done[stage] == through)
+            if (exchanges && stage >= first && stage < end &&
+                done[stage] == through)
               {
                 ghosts.start(x, dim);
                 begun = stage + 1;

@@ -3,9 +3,9 @@
 // used to have and is kept here for comparison, and for the library's kernels
 // with each kind of instructions that the processor has; one sweep, three that
 // follow each other through the cache, and three with the residual, forwards
-// and backwards. And a product with the matrix, A x, and x.Ax, for which the
-// library reads half of the matrix and the plain loop all of it. All are
-// measured in turn, many times, and the least is printed.
+// and backwards. And a product with the matrix, A x, and x.Ax. In three
+// dimensions the library stores half of the matrix, and the plain loop all of
+// it. All are measured in turn, many times, and the least is printed.
 //
 // Beside it what part that is of what the machine can do: of memory, as
 // measured by a triad a = b + s c, and of arithmetic, as measured by products
@@ -59,7 +59,8 @@ namespace benchmark_sweeps
           for (const std::size_t e : order)
             {
               columns.push_back(A.column(e));
-              values.insert(values.end(), A.block(e), A.block(e) + dim * dim);
+              const NodeBlock<dim> block = A.value(i, e);
+              values.insert(values.end(), block.begin(), block.end());
             }
           starts.push_back(columns.size());
         }
@@ -187,10 +188,10 @@ namespace benchmark_sweeps
 
     std::vector<NodeBlock<dim>> inverses(n, zero_block<dim>());
     for (unsigned int i = 0; i < n; ++i)
-      if (A.row_begin(i) < A.row_end(i))
+      if (!A.is_empty(i))
         {
           NodeBlock<dim> block;
-          std::copy_n(A.block(A.row_begin(i)), dim * dim, block.begin());
+          std::copy_n(A.diagonal(i), dim * dim, block.begin());
           inverses[i] =
             pseudo_inverse<dim>(block, 1e-10 * trace<dim>(block.data()));
         }
@@ -218,12 +219,12 @@ namespace benchmark_sweeps
       schedule.run(
         sweeps,
         with_residual,
-        [&](const unsigned int stage, const unsigned int chunk, RowRange) {
-          if (stage == sweeps.number)
-            plain.residual(schedule.chunk(chunk), r.data(), b.data(), x.data());
-          else
-            plain.relax(
-              schedule.chunk(chunk), b.data(), x.data(), sweeps.backwards);
+        [&](const Stage &stage, RowRange) {
+          const RowRange rows = schedule.chunk(stage.chunk);
+          if (stage.kind == Stage::computes_residual)
+            plain.residual(rows, r.data(), b.data(), x.data());
+          else if (stage.kind == Stage::relaxes)
+            plain.relax(rows, b.data(), x.data(), sweeps.backwards);
         },
         no_ghosts,
         x.data());
@@ -239,16 +240,21 @@ namespace benchmark_sweeps
       energy += column > 0 ? A.energy_product(x.data())
                            : plain.energy_product(x.data());
     };
-    // What a pass must read and write at least: blocks and column numbers, row
-    // starts, and the vector twice; sweeps also read inverse diagonals and the
-    // right hand side, and an energy product half of the matrix and no second
-    // vector. And the blocks that are multiplied.
-    const double bytes_of_matrix = A.n_blocks() *
+    // What a pass must read and write at least: what is stored of the matrix,
+    // row starts, the sums of the left, and the vector twice; sweeps also read
+    // inverse diagonals and the right hand side, and an energy product has no
+    // second vector, no sums, and needs half of a matrix. And the blocks that
+    // are multiplied.
+    const double bytes_of_matrix = A.n_stored_blocks() *
       (dim * dim * sizeof(double) + sizeof(unsigned int)),
                  bytes_of_vector = n * dim * sizeof(double),
-                 bytes_of_starts = n * sizeof(std::size_t);
-    const double bytes_of_sweep  = bytes_of_matrix + bytes_of_starts +
-      3 * bytes_of_vector + n * dim * dim * sizeof(double);
+                 bytes_of_starts =
+                   (stores_half<dim> ? 2. : 1.) * n * sizeof(std::size_t),
+                 bytes_of_sums  = stores_half<dim>
+       ? 2. * n * RowKernels::n_partial_sums * sizeof(double)
+       : 0.;
+    const double bytes_of_sweep = bytes_of_matrix + bytes_of_starts +
+      bytes_of_sums + 3 * bytes_of_vector + n * dim * dim * sizeof(double);
     struct Row
     {
       std::string                             name;
@@ -277,15 +283,17 @@ namespace benchmark_sweeps
       for (const unsigned int number : {1, 3})
         add_sweeps({number, backwards}, false);
     add_sweeps({3, false}, true);
-    rows.push_back({"A x",
-                    1,
-                    bytes_of_matrix + bytes_of_starts + 2 * bytes_of_vector,
-                    1. * A.n_blocks(),
-                    product,
-                    never});
+    rows.push_back(
+      {"A x",
+       1,
+       bytes_of_matrix + bytes_of_starts + bytes_of_sums + 2 * bytes_of_vector,
+       1. * A.n_blocks(),
+       product,
+       never});
     rows.push_back({"x.Ax",
                     1,
-                    .5 * bytes_of_matrix + bytes_of_starts + bytes_of_vector,
+                    (stores_half<dim> ? 1. : .5) * bytes_of_matrix +
+                      bytes_of_starts + bytes_of_vector,
                     .5 * (A.n_blocks() + n),
                     energy_product,
                     never});

@@ -189,10 +189,11 @@ namespace test_certificate
       for (unsigned int j = 0; j < A.n_rows(); ++j)
         if (A.find(i, j) < A.row_end(i))
           {
-            Tensor<1, dim> force;
+            const NodeBlock<dim> block = A.value(i, A.find(i, j));
+            Tensor<1, dim>       force;
             for (unsigned int c = 0; c < dim; ++c)
               for (unsigned int r = 0; r < dim; ++r)
-                force[r] += A.block(A.find(i, j))[c * dim + r] *
+                force[r] += block[c * dim + r] *
                   (s.u.local_element(dim * j + c) -
                    s.u.local_element(dim * i + c));
             sum += .5 * force.norm();

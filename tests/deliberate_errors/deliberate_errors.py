@@ -27,14 +27,15 @@ ERRORS = [
      "            }",
      "row and column of a hanging node are handed on to one of its masters only"),
     ("truncation in P", "common/levels/level_matrices.cc",
-     "double *target = B.block(begin + position[p->node]);\n              for",
-     "double *target = B.block(begin + position[p->node]);\n"
+     "            add_to(p->node, p->weight, finer_sums[slot].data());",
+     "            {\n"
      "              const LeafNode parent = p->node < level.n_nodes() ?\n"
      "                level.leaf_node(p->node) : LeafNode();\n"
      "              if (parent.exists() &&\n"
      "                  !truncation.is_identity(parent.number()))\n"
      "                continue;\n"
-     "              for",
+     "              add_to(p->node, p->weight, finer_sums[slot].data());\n"
+     "            }",
      "truncated nodes inherit nothing from the finer level"),
     ("restriction", "common/levels/level_transfer.cc",
      "transfer.restrict_and_add(k, coarse, fine);",
@@ -44,8 +45,8 @@ ERRORS = [
      "    transfer.restrict_and_add(k, coarse, half);",
      "residuals are restricted with half of their weight"),
     ("normal forces lag", "common/iteration/monotone_smoother.cc",
-     "x.updates_normal_forces && (stage > 0",
-     "false && x.updates_normal_forces && (stage > 0",
+     "x.updates_normal_forces &&\n          (stage.sweep > 0",
+     "false && x.updates_normal_forces &&\n          (stage.sweep > 0",
      "the leading relaxation never updates the normal forces"),
     ("stale level matrix", "common/levels/level_matrices.cc",
      "mark(i, j);\n            mark(j, i);",

@@ -74,8 +74,12 @@ namespace test_interface_damping
     NodeBlockMatrix<dim> rows(pattern);
     for (unsigned int i = 0; i < own.size(); ++i)
       for (std::size_t e = rows.row_begin(i); e < rows.row_end(i); ++e)
-        Eigen::Map<Matrix<dim>>(rows.block(e)) =
-          A.template block<dim, dim>(dim * own[i], dim * all[rows.column(e)]);
+        {
+          NodeBlock<dim> block;
+          Eigen::Map<Matrix<dim>>(block.data()) =
+            A.template block<dim, dim>(dim * own[i], dim * all[rows.column(e)]);
+          rows.set(i, e, block);
+        }
     return rows;
   }
 

@@ -264,10 +264,10 @@ namespace test_line_relaxation
         for (std::size_t e = A.row_begin(i) + 1; e < A.row_end(i); ++e)
           {
             const double s = strength(i, A.column(e));
-            A.block(e)[0] = A.block(e)[3] = -s;
+            A.set(i, e, {{-s, 0., 0., -s}});
             sum += s;
           }
-        A.block(A.row_begin(i))[0] = A.block(A.row_begin(i))[3] = sum;
+        A.set(i, A.row_begin(i), {{sum, 0., 0., sum}});
       }
     LineRelaxation<2> relaxation(
       A,

@@ -267,14 +267,18 @@ namespace test_plane_relaxation
       covered.empty() ? numbers::invalid_unsigned_int : *covered.begin();
     const unsigned int lost = (gone + 1) % dim;
     for (unsigned int i = 0; i < B.n_rows(); ++i)
-      for (std::size_t e = B.row_begin(i); e < B.row_end(i); ++e)
-        for (unsigned int k = 0; k < dim; ++k)
-          {
-            if (i == gone)
-              B.block(e)[k * dim + lost] = 0.;
-            if (B.column(e) == gone)
-              B.block(e)[lost * dim + k] = 0.;
-          }
+      for (std::size_t e = B.row_begin(i); e < B.stored_end(i); ++e)
+        {
+          NodeBlock<dim> block = B.value(i, e);
+          for (unsigned int k = 0; k < dim; ++k)
+            {
+              if (i == gone)
+                block[k * dim + lost] = 0.;
+              if (B.column(e) == gone)
+                block[lost * dim + k] = 0.;
+            }
+          B.set(i, e, block);
+        }
     of_level.factorise();
     const Truncation<dim> none(d.constraints());
     VectorType            rhs = b, y = random_vector();
@@ -320,8 +324,9 @@ namespace test_plane_relaxation
 
     PlaneRelaxation<dim> fresh_of_level(A, holding, MPI_COMM_WORLD);
     fresh_of_level.factorise();
-    for (std::size_t e = 0; e < B.n_blocks(); ++e)
-      std::copy_n(A.block(e), dim * dim, B.block(e));
+    for (unsigned int i = 0; i < B.n_rows(); ++i)
+      for (std::size_t e = B.row_begin(i); e < B.stored_end(i); ++e)
+        B.set(i, e, A.value(i, e));
     of_level.factorise();
     v = start;
     w = start;

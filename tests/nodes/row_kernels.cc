@@ -22,7 +22,8 @@ using namespace Tests;
 
 namespace test_row_kernels
 {
-  // One entry after the other, in the order of the columns.
+  // One entry after the other, in the order of the columns. Those from n_rows()
+  // on are nodes of other processes.
   template <int dim>
   std::vector<double>
   plain_product(const NodeBlockMatrix<dim> &A,
@@ -32,9 +33,12 @@ namespace test_row_kernels
     std::vector<double> product(dim, 0.);
     for (unsigned int j = 0; j < x.size() / dim; ++j)
       if (const std::size_t e = A.find(row, j); e != A.row_end(row))
-        for (unsigned int r = 0; r < dim; ++r)
-          for (unsigned int c = 0; c < dim; ++c)
-            product[r] += A.block(e)[c * dim + r] * x[dim * j + c];
+        {
+          const NodeBlock<dim> block = A.value(row, e);
+          for (unsigned int r = 0; r < dim; ++r)
+            for (unsigned int c = 0; c < dim; ++c)
+              product[r] += block[c * dim + r] * x[dim * j + c];
+        }
     return product;
   }
 
@@ -85,7 +89,10 @@ namespace test_row_kernels
 
   template <int dim>
   void
-  test(const NodeBlockMatrix<dim> &A, const NodeRanges &nodes, Random &random)
+  test(const NodeBlockMatrix<dim> &A,
+       const NodeRanges           &nodes,
+       const unsigned int          n_ghosts,
+       Random                     &random)
   {
     const unsigned int          n = A.n_rows();
     std::vector<NodeBlock<dim>> inverses(n, zero_block<dim>());
@@ -93,17 +100,18 @@ namespace test_row_kernels
       if (A.row_begin(i) < A.row_end(i))
         {
           NodeBlock<dim> block;
-          std::copy_n(A.block(A.row_begin(i)), dim * dim, block.begin());
+          std::copy_n(A.diagonal(i), dim * dim, block.begin());
           inverses[i] =
             pseudo_inverse<dim>(block, 1e-10 * trace<dim>(block.data()));
         }
     const GaussSeidel<dim>    relaxation(A, inverses, nodes, 16);
     GhostExchange             no_ghosts;
-    const std::vector<double> b     = random_vector(dim * n, random),
-                              start = random_vector(dim * n, random);
+    const std::vector<double> b = random_vector(dim * n, random),
+                              start =
+                                random_vector(dim * (n + n_ghosts), random);
 
     double energy_error = 0, product_error = 0, residual_error = 0,
-           sweep_error = 0;
+           sweep_error = 0, row_error = 0, left_over = 0;
     for (const auto instructions : available_instructions())
       {
         instructions_in_use = instructions;
@@ -118,37 +126,29 @@ namespace test_row_kernels
           std::max(product_error, relative_difference(expected, Ax));
         for (unsigned int i = 0; i < n; ++i)
           {
-            const NodeValue<dim> product =
-              A.row_times(i, start.data(), /*backwards =*/true);
+            const NodeValue<dim> product = A.row_times(i, start.data());
             std::copy_n(product.begin(), dim, &Ax[dim * i]);
           }
         product_error =
           std::max(product_error, relative_difference(expected, Ax));
-        // All rows, or the first half, as if the others were of another
-        // process.
-        for (const unsigned int m : {n, n / 2})
-          {
-            double energy = 0., all = 0.;
-            for (unsigned int i = 0; i < m; ++i)
-              for (std::size_t e = A.row_begin(i); e < A.row_end(i); ++e)
-                for (unsigned int c = 0; c < dim; ++c)
-                  for (unsigned int q = 0; q < dim; ++q)
-                    {
-                      const unsigned int j    = A.column(e);
-                      const double       term = start[dim * i + q] *
-                        A.block(e)[c * dim + q] * start[dim * j + c];
-                      energy += (j < i                ? 0.
-                                   : j == i || j >= m ? 1.
-                                                      : 2.) *
-                        term;
-                      all += std::abs(term);
-                    }
-            energy_error = std::max(
-              energy_error,
-              std::abs(energy -
-                       RowKernels::energy<dim>(A.rows(), m, start.data())) /
-                all);
-          }
+        double energy = 0., all = 0.;
+        for (unsigned int i = 0; i < n; ++i)
+          for (std::size_t e = A.row_begin(i); e < A.row_end(i); ++e)
+            {
+              const unsigned int   j     = A.column(e);
+              const NodeBlock<dim> block = A.value(i, e);
+              for (unsigned int c = 0; c < dim; ++c)
+                for (unsigned int q = 0; q < dim; ++q)
+                  {
+                    const double term = start[dim * i + q] *
+                      block[c * dim + q] * start[dim * j + c];
+                    energy += (j < i ? 0. : j == i || j >= n ? 1. : 2.) * term;
+                    all += std::abs(term);
+                  }
+            }
+        energy_error =
+          std::max(energy_error,
+                   std::abs(energy - A.energy_product(start.data())) / all);
         A.residual(r.data(), b.data(), start.data());
         for (unsigned int i = 0; i < dim * n; ++i)
           expected[i] = b[i] - expected[i];
@@ -182,12 +182,67 @@ namespace test_row_kernels
             sweep_error = std::max({sweep_error,
                                     relative_difference(plain, x),
                                     relative_difference(expected, r)});
+
+            // Row by row, as contact nodes are relaxed.
+            x = plain     = start;
+            double  *sums = A.partial_sums();
+            Prefetch nothing;
+            if (backwards)
+              RowKernels::pass<dim>(
+                A.rows(),
+                {{0, n}, backwards, nothing, {sums, false, true}},
+                x.data());
+            for (unsigned int k = 0; k < n; ++k)
+              {
+                const unsigned int i = backwards ? n - 1 - k : k;
+                if (A.is_empty(i))
+                  continue;
+                const RowKernels::LeftSums left{sums, true, !backwards};
+                const NodeValue<dim>       product = RowKernels::times<dim>(
+                  A.rows(), i, x.data(), backwards, left);
+                for (unsigned int q = 0; q < dim; ++q)
+                  for (unsigned int c = 0; c < dim; ++c)
+                    x[dim * i + q] +=
+                      inverses[i][c * dim + q] * (b[dim * i + c] - product[c]);
+                RowKernels::add_share<dim>(A.rows(), i, x.data(), left);
+                plain_relaxation(A, inverses, i, b, plain);
+              }
+            row_error = std::max(row_error, relative_difference(plain, x));
+
+            // Each loop over all rows leaves the sums as it has found them.
+            for (const NodeRanges &some : {nodes, NodeRanges()})
+              for (const unsigned int n_sweeps : {0, 1, 2})
+                for (const bool with_residual : {false, true})
+                  {
+                    GaussSeidel<dim>(A, inverses, some, 16)
+                      .run({n_sweeps, backwards},
+                           b.data(),
+                           x.data(),
+                           no_ghosts,
+                           with_residual ? r.data() : nullptr);
+                    for (unsigned int i = 0; i < n; ++i)
+                      {
+                        const std::vector<double> product =
+                          plain_product(A, i, x);
+                        for (unsigned int d = 0; d < dim; ++d)
+                          expected[dim * i + d] = b[dim * i + d] - product[d];
+                      }
+                    if (with_residual)
+                      row_error =
+                        std::max(row_error, relative_difference(expected, r));
+                    for (unsigned int s = 0;
+                         stores_half<dim> && s < RowKernels::n_partial_sums * n;
+                         ++s)
+                      left_over = std::max(left_over, std::abs(sums[s]));
+                  }
           }
       }
     check_below(product_error, 1e-13, "products");
     check_below(energy_error, 1e-13, "energies of half the matrix");
     check_below(residual_error, 1e-13, "residuals");
     check_below(sweep_error, 1e-13, "sweeps, and residuals after them");
+    check_below(row_error, 1e-13, "sweeps by single rows, and none at all");
+    check_below(left_over, 1e-300, "no sums are left over");
   }
 
 
@@ -202,7 +257,7 @@ namespace test_row_kernels
       block_parameters<dim>(FrictionLaw::none, 0.), 3, .3, random);
     check(problem.n_hanging() > 0, "there are such");
     const NodeBlockMatrix<dim> &A = problem.matrix();
-    test(A, {{0, A.n_rows()}}, random);
+    test(A, {{0, A.n_rows()}}, 0, random);
 
     const std::vector<double> x = random_vector(dim * A.n_rows(), random);
     std::vector<double>       Ax(x);
@@ -218,14 +273,14 @@ namespace test_row_kernels
 
 
   // Row i couples to some of the next i%12 nodes, unless it is empty, and these
-  // to it.
+  // to it; and every fifth one to some nodes of other processes.
   template <int dim>
   void
   test_lengths()
   {
     std::cout << dim << "D, rows of all lengths" << std::endl;
     Random                                 random(2);
-    const unsigned int                     n = 100;
+    const unsigned int                     n = 100, n_ghosts = 6;
     std::vector<std::vector<unsigned int>> columns(n);
     for (unsigned int i = 0; i < n; ++i)
       if (i % 7 != 3)
@@ -237,6 +292,9 @@ namespace test_row_kernels
                 columns[i].push_back(j);
                 columns[j].push_back(i);
               }
+          for (unsigned int g = 0; g < n_ghosts; ++g)
+            if (i % 5 == 0 && random.chance(.5))
+              columns[i].push_back(n + g);
         }
     auto                  pattern = std::make_shared<NodePattern>();
     std::vector<unsigned> lengths(12, 0);
@@ -247,14 +305,23 @@ namespace test_row_kernels
       }
     check(*std::min_element(lengths.begin(), lengths.begin() + 8) > 0,
           "from 0 to 7 blocks");
+    if (stores_half<dim>)
+      pattern->store_half();
     NodeBlockMatrix<dim> A(pattern);
     for (unsigned int i = 0; i < n; ++i)
       for (std::size_t e = A.row_begin(i); e < A.row_end(i); ++e)
-        for (unsigned int c = 0; c < dim; ++c)
-          for (unsigned int r = 0; r < dim; ++r)
-            A.block(e)[c * dim + r] =
-              random(-1., 1.) + (A.column(e) == i && c == r ? 40. * dim : 0.);
-    test(A, {{0, 1}, {2, 30}, {31, 33}, {40, 99}}, random);
+        if (A.column(e) >= i)
+          {
+            NodeBlock<dim> block;
+            for (unsigned int c = 0; c < dim; ++c)
+              for (unsigned int r = 0; r < dim; ++r)
+                block[c * dim + r] = A.column(e) == i && r < c
+                  ? block[r * dim + c]
+                  : random(-1., 1.) +
+                    (A.column(e) == i && c == r ? 40. * dim : 0.);
+            set_symmetric(A, i, e, block);
+          }
+    test(A, {{0, 1}, {2, 30}, {31, 33}, {40, 99}}, n_ghosts, random);
   }
 
 

@@ -238,10 +238,12 @@ namespace Tests
       Eigen::MatrixXd::Zero(dim * A.n_rows(), dim * A.n_rows());
     for (unsigned int i = 0; i < A.n_rows(); ++i)
       for (std::size_t e = A.row_begin(i); e < A.row_end(i); ++e)
-        for (unsigned int c = 0; c < dim; ++c)
-          for (unsigned int r = 0; r < dim; ++r)
-            result(dim * i + r, dim * A.column(e) + c) =
-              A.block(e)[c * dim + r];
+        {
+          const NodeBlock<dim> block = A.value(i, e);
+          for (unsigned int c = 0; c < dim; ++c)
+            for (unsigned int r = 0; r < dim; ++r)
+              result(dim * i + r, dim * A.column(e) + c) = block[c * dim + r];
+        }
     return result;
   }
 

@@ -144,6 +144,28 @@ namespace Tests
 
 
 
+  /** Sets a block of a symmetric matrix, given column by column, to the right
+   * of the diagonal, and its transpose if that is stored, too. */
+  template <int dim>
+  void
+  set_symmetric(NodeBlockMatrix<dim> &A,
+                const unsigned int    row,
+                const std::size_t     position,
+                const NodeBlock<dim> &block)
+  {
+    A.set(row, position, block);
+    const unsigned int column = A.column(position);
+    if (stores_half<dim> || column >= A.n_rows())
+      return;
+    NodeBlock<dim> transposed;
+    for (unsigned int c = 0; c < dim; ++c)
+      for (unsigned int r = 0; r < dim; ++r)
+        transposed[r * dim + c] = block[c * dim + r];
+    A.set(column, A.find(column, row), transposed);
+  }
+
+
+
   VectorType to_vector(const Eigen::VectorXd &x, const VectorType &like);
 
 

@@ -66,10 +66,8 @@ namespace Benchmark
   RotatedProblem<dim>::block(const unsigned int row,
                              const std::size_t  position) const
   {
-    const double  *A = problem.stiffness.blocks().block(position);
-    NodeBlock<dim> B;
-    std::copy(A, A + dim * dim, B.begin());
-    const auto turn = [&](const unsigned int p, const bool rows) {
+    NodeBlock<dim> B    = problem.stiffness.blocks().value(row, position);
+    const auto     turn = [&](const unsigned int p, const bool rows) {
       NodeBlock<dim> C{};
       for (unsigned int e = 0; e < dim; ++e)
         for (unsigned int d = 0; d < dim; ++d)
