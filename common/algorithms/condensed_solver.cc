@@ -380,9 +380,7 @@ namespace Friction
     NodeBlockMatrix<dim> S(pattern);
     for (unsigned int i = 0; i < kept.size(); ++i)
       for (std::size_t e = S.row_begin(i); e < S.stored_end(i); ++e)
-        {
-          S.set(i, e, condensation->block(i, S.column(e)));
-        }
+        S.set(i, e, condensation->block(i, S.column(e)));
 
     auto small = std::make_unique<Small>(
       is_prescribed, values, std::move(S), nodes, problem);

@@ -4,6 +4,7 @@
 #include <common/parallel/run_clock.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace Friction
 {
@@ -154,27 +155,17 @@ namespace Friction
         loop.prefetch.step();
         relax_contact_node(p, x, update, loop);
       };
-      unsigned int done = backwards ? all.second : all.first;
-      if (!backwards)
+      RowRange rest = all;
+      for (unsigned int k = 0; k < end - begin; ++k)
         {
-          for (unsigned int i = begin; i < end; ++i)
-            {
-              pass(done, node(i));
-              relax(in_order[i]);
-              done = node(i) + 1;
-            }
-          pass(done, all.second);
+          const unsigned int i = backwards ? end - 1 - k : begin + k;
+          if (backwards)
+            pass(node(i) + 1, std::exchange(rest.second, node(i)));
+          else
+            pass(std::exchange(rest.first, node(i) + 1), node(i));
+          relax(in_order[i]);
         }
-      else
-        {
-          for (unsigned int i = end; i-- > begin;)
-            {
-              pass(node(i) + 1, done);
-              relax(in_order[i]);
-              done = node(i);
-            }
-          pass(all.first, done);
-        }
+      pass(rest.first, rest.second);
     };
 
     schedule.run(

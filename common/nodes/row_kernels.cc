@@ -48,12 +48,6 @@ namespace Friction
         }
 
         inline DEAL_II_ALWAYS_INLINE Pair
-        sum_of_halves() const
-        {
-          return lower + upper;
-        }
-
-        inline DEAL_II_ALWAYS_INLINE Pair
         sums_of_pairs() const
         {
           return __builtin_shufflevector(lower, upper, 0, 2) +
@@ -96,13 +90,6 @@ namespace Friction
         operator+=(const OneQuad &other)
         {
           all += other.all;
-        }
-
-        inline DEAL_II_ALWAYS_INLINE Pair
-        sum_of_halves() const
-        {
-          return __builtin_shufflevector(all, all, 0, 1) +
-            __builtin_shufflevector(all, all, 2, 3);
         }
 
         inline DEAL_II_ALWAYS_INLINE Pair
