@@ -375,8 +375,7 @@ namespace Friction
           row[j] = j;
         pattern->append_row(row);
       }
-    if (stores_half<dim>)
-      pattern->store_half();
+    pattern->template complete<dim>();
     NodeBlockMatrix<dim> S(pattern);
     for (unsigned int i = 0; i < kept.size(); ++i)
       for (std::size_t e = S.row_begin(i); e < S.stored_end(i); ++e)

@@ -67,7 +67,7 @@ namespace Friction
     const NodeBlockMatrix<dim> &A   = problem.stiffness.blocks();
     double                      sum = 0;
     for (unsigned int i = 0; i < A.n_rows(); ++i)
-      if (A.row_begin(i) < A.row_end(i))
+      if (!A.is_empty(i))
         sum += trace<dim>(A.diagonal(i)) *
           dot<dim>(u.begin() + dim * i, u.begin() + dim * i);
     return std::max(1e-12 * sum_over_processes(sum, problem.communicator()),

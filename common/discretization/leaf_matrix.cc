@@ -268,9 +268,7 @@ namespace Friction
             add(column);
         pattern->append_row(columns);
       }
-    pattern->columns.shrink_to_fit();
-    if (stores_half<dim>)
-      pattern->store_half();
+    pattern->template complete<dim>();
     owned_pattern = pattern;
 
     pattern = std::make_shared<NodePattern>();

@@ -76,7 +76,7 @@ namespace Friction
       position[node] = outside;
     nodes.clear();
     const auto add = [&](const unsigned int node) {
-      if (position[node] == outside && A.row_begin(node) < A.row_end(node))
+      if (position[node] == outside && !A.is_empty(node))
         {
           position[node] = nodes.size();
           nodes.push_back(node);

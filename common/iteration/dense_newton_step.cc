@@ -34,7 +34,7 @@ namespace Friction
     first.assign(1, 0);
     for (unsigned int i = 0; i < n; ++i)
       {
-        for (unsigned int e = 0; e < dim && A.row_begin(i) < A.row_end(i); ++e)
+        for (unsigned int e = 0; e < dim && !A.is_empty(i); ++e)
           {
             NodeValue<dim> direction{};
             for (unsigned int d = 0; d < dim; ++d)

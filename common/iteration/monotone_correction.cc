@@ -164,7 +164,7 @@ namespace Friction
                  *up = upper[k].begin();
 
     const auto relax_node = [&](const unsigned int i) {
-      if (B.row_begin(i) == B.row_end(i))
+      if (B.is_empty(i))
         return;
       const NodeBlock<dim> &inverse = matrices.inverse_diagonals(k)[i];
       NodeValue<dim>        defect  = B.row_times(i, c);

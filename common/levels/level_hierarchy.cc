@@ -474,9 +474,7 @@ namespace Friction
             owned_pattern = merged;
           }
       }
-    owned_pattern->columns.shrink_to_fit();
-    if (stores_half<dim>)
-      owned_pattern->store_half();
+    owned_pattern->template complete<dim>();
     for (const unsigned int column : owned_pattern->columns)
       if (column >= n_owned)
         level.coupled.push_back(column);

@@ -17,7 +17,7 @@ namespace Friction
   {
   public:
     /**
-     * @param A                   symmetric, see NodePattern::store_half().
+     * @param A                   symmetric, see NodePattern::complete().
      * @param inverse_diagonals   one block per row, the (pseudo-)inverse of its
      *                            diagonal block; a zero block leaves its node
      *                            alone. Kept by reference, as is @p A.

@@ -26,7 +26,7 @@ namespace Friction
   void
   NodePattern::store_half()
   {
-    Assert(stored_starts.empty(), ExcMessage("Call store_half() once."));
+    Assert(stored_starts.empty(), ExcMessage("Call complete() once."));
     stored_starts.reserve(starts.size());
     stored_starts.push_back(0);
     // The next of the blocks on the left in each row that is to be found.
@@ -122,7 +122,7 @@ namespace Friction
     AssertThrow(n_rows() == 0 ||
                   stores_half<dim> != pattern->stored_starts.empty(),
                 ExcMessage("The pattern has not what kernels need; see "
-                           "NodePattern::store_half()."));
+                           "NodePattern::complete()."));
     if (!stores_half<dim>)
       return nullptr;
     const std::size_t size =
@@ -138,7 +138,7 @@ namespace Friction
   void
   NodeBlockMatrix<dim>::vmult(double *y, const double *x) const
   {
-    RowKernels::product<dim>(rows(), y, x, partial_sums());
+    residual(y, nullptr, x);
   }
 
 

@@ -57,10 +57,18 @@ namespace Friction
     /** Takes @p row_columns, which it sorts, as the columns of the next row. */
     void append_row(std::vector<unsigned int> &row_columns);
 
-    /** To be called when all rows are there, for a symmetric matrix: among the
-     * rows the pattern itself has to be symmetric, and each row that has a
-     * block has a diagonal one. */
-    void store_half();
+    /** To be called when all rows are there, for a symmetric matrix: stores
+     * half of it, where that is faster, see stores_half. Among the rows the
+     * pattern itself has to be symmetric, and each row that has a block has a
+     * diagonal one. */
+    template <int dim>
+    void
+    complete()
+    {
+      columns.shrink_to_fit();
+      if (stores_half<dim>)
+        store_half();
+    }
 
     std::size_t
     memory_consumption() const
@@ -69,6 +77,9 @@ namespace Friction
         sizeof(std::size_t) +
         (columns.capacity() + mirror_images.capacity()) * sizeof(unsigned int);
     }
+
+  private:
+    void store_half();
   };
 
 
@@ -271,17 +282,8 @@ namespace Friction
      * as each loop over all rows has to leave it. */
     double *partial_sums() const;
 
-    /** Has the memory of a row brought closer, for use in the near future. */
-    void
-    prefetch(const unsigned int row) const
-    {
-      const char *begin = address(row), *end = address(row + 1);
-      for (; begin < end; begin += 64)
-        __builtin_prefetch(begin);
-      __builtin_prefetch(columns + row_starts[row]);
-    }
-
-    /** The same for many rows, in @p n_steps steps. */
+    /** Has the memory of rows brought closer, for use in the near future, in
+     * @p n_steps steps. */
     Prefetch
     prefetch(const RowRange &rows, const unsigned int n_steps) const
     {

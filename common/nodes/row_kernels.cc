@@ -677,17 +677,6 @@ namespace Friction
 
     template <int dim>
     void
-    product(const BlockRows<dim> &A, double *y, const double *x, double *sums)
-    {
-      Prefetch nothing;
-      residual<dim>(
-        A, {{0, A.n_rows}, false, nothing, {sums, true, true}}, y, nullptr, x);
-    }
-
-
-
-    template <int dim>
-    void
     residual(const BlockRows<dim> &A,
              const RowLoop        &loop,
              double               *r,
@@ -746,12 +735,10 @@ namespace Friction
                                      const LeftSums &);                      \
   template void           pass<dim>(                                         \
     const BlockRows<dim> &, const RowLoop &, const double *);      \
-  template void add_share<dim>(const BlockRows<dim> &,                       \
-                               const unsigned int,                           \
-                               const double *,                               \
-                               const LeftSums &);                            \
-  template void product<dim>(                                                \
-    const BlockRows<dim> &, double *, const double *, double *);             \
+  template void   add_share<dim>(const BlockRows<dim> &,                     \
+                               const unsigned int,                         \
+                               const double *,                             \
+                               const LeftSums &);                          \
   template void   residual<dim>(const BlockRows<dim> &,                      \
                               const RowLoop &,                             \
                               double *,                                    \

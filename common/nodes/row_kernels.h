@@ -151,12 +151,8 @@ namespace Friction
                    const double         *x,
                    const LeftSums       &left);
 
-    /** y = A x for all rows; @p sums are zero, and are on return. */
-    template <int dim>
-    void
-    product(const BlockRows<dim> &A, double *y, const double *x, double *sums);
-
-    /** r = b - A x for some rows, forwards in any case. */
+    /** r = b - A x for some rows, forwards in any case; A x, if @p b is a null
+     * pointer. */
     template <int dim>
     void residual(const BlockRows<dim> &A,
                   const RowLoop        &loop,

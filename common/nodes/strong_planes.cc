@@ -82,7 +82,7 @@ namespace Friction
                    const unsigned int          row,
                    const IsStrong             &is_strong)
     {
-      if (A.row_begin(row) == A.row_end(row))
+      if (A.is_empty(row))
         return false;
       std::size_t n   = 0;
       double      sum = 0.;

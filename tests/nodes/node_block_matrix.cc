@@ -57,8 +57,7 @@ namespace test_node_block_matrix
           pattern[i].push_back(i);
         blocks->append_row(pattern[i]);
       }
-    if (stores_half<dim>)
-      blocks->store_half();
+    blocks->template complete<dim>();
     NodeBlockMatrix<dim> A(blocks);
     for (unsigned int i = 0; i < n; ++i)
       for (std::size_t e = A.row_begin(i); e < A.row_end(i); ++e)

@@ -305,8 +305,7 @@ namespace test_row_kernels
       }
     check(*std::min_element(lengths.begin(), lengths.begin() + 8) > 0,
           "from 0 to 7 blocks");
-    if (stores_half<dim>)
-      pattern->store_half();
+    pattern->template complete<dim>();
     NodeBlockMatrix<dim> A(pattern);
     for (unsigned int i = 0; i < n; ++i)
       for (std::size_t e = A.row_begin(i); e < A.row_end(i); ++e)
