@@ -279,14 +279,14 @@ namespace StepFriction2d
   // nodes $p$ of the leaf mesh:
   //
   // @code
-  //   sweep forwards three times, tau(p) with it               (part 2)
+  //   sweep three times, tau(p) with it                        (part 2)
   //   repeat
   //     T, omega''  from the phases of the contact nodes       (part 3)
   //     B_k         from T (A + omega'') T, where it changed   (part 4)
   //     v           by a V-cycle for T (A + omega'') T v
   //                                  = T (r - omega'(u))
   //     u += alpha v  projected, with the best alpha           (parts 5, 1)
-  //     sweep backwards three times, and forwards three times  (part 2)
+  //     sweep three times, and three times for the next cycle  (part 2)
   //   until the energy norm of the increment is small
   // @endcode
   template <int dim>

@@ -60,10 +60,10 @@ namespace Friction
 
   template <int dim>
   void
-  LeafRelaxation<dim>::run(VectorType       &v,
-                           const VectorType &r,
-                           const Sweeps     &sweeps,
-                           VectorType       *defect) const
+  LeafRelaxation<dim>::run(VectorType        &v,
+                           const VectorType  &r,
+                           const unsigned int n_sweeps,
+                           VectorType        *defect) const
   {
     Assert(current != nullptr, ExcMessage("The truncation is not known yet."));
     const PhaseScope phase(problem.communicator(), SolverPhase::leading_sweeps);
@@ -83,9 +83,8 @@ namespace Friction
         defect_at_node[d] -= turning[d] + (*slopes)[p][d] * normal;
     };
     const auto relax_contact_nodes = [&]() {
-      for (unsigned int i = 0; i < contact.size(); ++i)
+      for (unsigned int p = 0; p < contact.size(); ++p)
         {
-          const unsigned int p = sweeps.backwards ? contact.size() - 1 - i : i;
           // Where normal forces act along a node, it would not settle: they
           // may answer by more than what has been taken away.
           if ((*slopes)[p] != NodeValue<dim>{})
@@ -105,17 +104,11 @@ namespace Friction
 
     // Contact nodes by themselves, since the matrix does not have what friction
     // adds.
-    for (unsigned int i = 0; i < sweeps.number; ++i)
+    for (unsigned int i = 0; i < n_sweeps; ++i)
       {
         problem.stiffness.update_ghosts(v);
-        if (sweeps.backwards)
-          relax_contact_nodes();
-        ordinary_nodes.run({1, sweeps.backwards},
-                           r.begin(),
-                           v.begin(),
-                           problem.stiffness.ghosts());
-        if (!sweeps.backwards)
-          relax_contact_nodes();
+        ordinary_nodes.run(1, r.begin(), v.begin(), problem.stiffness.ghosts());
+        relax_contact_nodes();
       }
     current->apply(v.begin());
     if (defect == nullptr)

@@ -39,10 +39,10 @@ namespace Friction
      * @param r       truncated.
      * @param defect  if not null, the truncated residual on return.
      */
-    void run(VectorType       &v,
-             const VectorType &r,
-             const Sweeps     &sweeps,
-             VectorType       *defect = nullptr) const;
+    void run(VectorType        &v,
+             const VectorType  &r,
+             const unsigned int n_sweeps,
+             VectorType        *defect = nullptr) const;
 
     std::size_t
     memory_consumption() const

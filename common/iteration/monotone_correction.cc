@@ -133,14 +133,11 @@ namespace Friction
 
   template <int dim>
   void
-  MonotoneCorrection<dim>::relax(const unsigned int k,
-                                 const bool         backwards,
-                                 VectorType        *defect_after)
+  MonotoneCorrection<dim>::relax(const unsigned int k, VectorType *defect_after)
   {
     const PhaseScope phase(levels.communicator(), SolverPhase::coarse_sweeps);
     for (unsigned int step = 0; step < smoothing_steps; ++step)
-      relax_within_bounds(
-        k, levels.hierarchy().level(k).relaxed_nodes(), backwards);
+      relax_within_bounds(k, levels.hierarchy().level(k).relaxed_nodes());
     if (defect_after != nullptr)
       levels.matrices().matrix(k).residual(
         defect_after->begin(), rhs[k].begin(), correction[k].begin());
@@ -154,8 +151,7 @@ namespace Friction
   template <int dim>
   void
   MonotoneCorrection<dim>::relax_within_bounds(const unsigned int k,
-                                               const NodeRanges  &nodes,
-                                               const bool         backwards)
+                                               const NodeRanges  &nodes)
   {
     const LevelMatrices<dim>   &matrices = levels.matrices();
     const NodeBlockMatrix<dim> &B        = matrices.matrix(k);
@@ -206,14 +202,9 @@ namespace Friction
         c[dim * i + d] += step[d];
     };
 
-    if (!backwards)
-      for (const auto &range : nodes)
-        for (unsigned int i = range.first; i < range.second; ++i)
-          relax_node(i);
-    else
-      for (auto range = nodes.rbegin(); range != nodes.rend(); ++range)
-        for (unsigned int i = range->second; i-- > range->first;)
-          relax_node(i);
+    for (const auto &range : nodes)
+      for (unsigned int i = range.first; i < range.second; ++i)
+        relax_node(i);
     levels.coupled_ghosts(k).update(c, dim);
   }
 
@@ -300,8 +291,8 @@ namespace Friction
     for (unsigned int turn = 0; turn < 10; ++turn)
       {
         std::copy_n(c, n_values, step);
-        relax_within_bounds(0, all, false);
-        relax_within_bounds(0, all, true);
+        relax_within_bounds(0, all);
+        relax_within_bounds(0, all);
         std::array<double, 2> change_and_size{};
         for (unsigned int i = 0; i < n_values; ++i)
           {

@@ -43,9 +43,7 @@ namespace Friction
 
     void prepare_visits(const unsigned int level) override;
 
-    void relax(const unsigned int level,
-               const bool         backwards,
-               VectorType        *defect_after) override;
+    void relax(const unsigned int level, VectorType *defect_after) override;
 
     void solve_coarsest() override;
 
@@ -68,9 +66,7 @@ namespace Friction
     // What a level needs to know of others to restrict its bounds.
     std::vector<GhostExchange> transfer_ghosts;
 
-    void relax_within_bounds(const unsigned int level,
-                             const NodeRanges  &nodes,
-                             const bool         backwards);
+    void relax_within_bounds(const unsigned int level, const NodeRanges &nodes);
 
     bool step_within_bounds();
   };

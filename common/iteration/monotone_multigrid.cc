@@ -74,7 +74,7 @@ namespace Friction
     step_control->begin();
     last_length = 1.;
     x.forget_step();
-    smoother->forward(x, smoothing_steps, /*trust first normal forces =*/true);
+    smoother->relax(x, smoothing_steps, /*trust first normal forces =*/true);
   }
 
 
@@ -92,8 +92,8 @@ namespace Friction
 
     x.begin_step();
     last_length = step_control->advance(x, v);
-    smoother->backward(x, smoothing_steps);
-    smoother->forward(x, smoothing_steps);
+    // Those behind this correction and those before the next one.
+    smoother->relax(x, 2 * smoothing_steps);
     x.end_step();
     return last_length;
   }

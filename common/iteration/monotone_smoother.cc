@@ -93,42 +93,19 @@ namespace Friction
 
   template <int dim>
   void
-  MonotoneSmoother<dim>::forward(Iterate           &x,
-                                 const unsigned int n_sweeps,
-                                 const bool trust_first_normal_forces) const
-  {
-    sweep(x, {n_sweeps, /*backwards =*/false}, trust_first_normal_forces);
-  }
-
-
-
-  template <int dim>
-  void
-  MonotoneSmoother<dim>::backward(Iterate &x, const unsigned int n_sweeps) const
-  {
-    sweep(x, {n_sweeps, /*backwards =*/true}, false);
-  }
-
-
-
-  // Whatever comes last, the residual or nothing, is a stage of its own behind
-  // the sweeps.
-  template <int dim>
-  void
-  MonotoneSmoother<dim>::sweep(Iterate      &x,
-                               const Sweeps &sweeps,
-                               const bool    trust_first_normal_forces) const
+  MonotoneSmoother<dim>::relax(Iterate           &x,
+                               const unsigned int n_sweeps,
+                               const bool trust_first_normal_forces) const
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::leading_sweeps);
-    const NodeBlockMatrix<dim> &matrix    = problem.stiffness.blocks();
-    const BlockRows<dim>        rows      = matrix.rows();
-    const ContactBoundary<dim> &contact   = problem.contact;
-    const SweepSchedule<dim>   &schedule  = ordinary_nodes->schedule();
-    const bool                  backwards = sweeps.backwards;
-    const double               *f         = problem.forces.begin();
-    double                     *u         = x.u.begin();
+    const NodeBlockMatrix<dim> &matrix   = problem.stiffness.blocks();
+    const BlockRows<dim>        rows     = matrix.rows();
+    const ContactBoundary<dim> &contact  = problem.contact;
+    const SweepSchedule<dim>   &schedule = ordinary_nodes->schedule();
+    const double               *f        = problem.forces.begin();
+    double                     *u        = x.u.begin();
     problem.stiffness.update_ghosts(x.u);
-    if (!backwards && x.residual.size() != x.u.size())
+    if (x.residual.size() != x.u.size())
       x.residual.reinit(x.u, true);
 
     // Rows that are no ordinary nodes': contact nodes, and between them some
@@ -139,7 +116,7 @@ namespace Friction
       const auto pass = [&](const unsigned int first, const unsigned int end) {
         if (first < end)
           RowKernels::pass<dim>(
-            rows, {{first, end}, backwards, loop.prefetch, loop.left}, u);
+            rows, {{first, end}, loop.prefetch, loop.left}, u);
       };
       const unsigned int chunk = schedule.chunk_of(all.first);
       const auto         node  = [&](const unsigned int number) {
@@ -151,34 +128,24 @@ namespace Friction
         ++begin;
       while (begin < end && node(end - 1) >= all.second)
         --end;
-      const auto relax = [&](const unsigned int p) {
-        loop.prefetch.step();
-        relax_contact_node(p, x, update, loop);
-      };
-      RowRange rest = all;
-      for (unsigned int k = 0; k < end - begin; ++k)
+      unsigned int next = all.first;
+      for (unsigned int i = begin; i < end; ++i)
         {
-          const unsigned int i = backwards ? end - 1 - k : begin + k;
-          if (backwards)
-            pass(node(i) + 1, std::exchange(rest.second, node(i)));
-          else
-            pass(std::exchange(rest.first, node(i) + 1), node(i));
-          relax(in_order[i]);
+          pass(std::exchange(next, node(i) + 1), node(i));
+          loop.prefetch.step();
+          relax_contact_node(in_order[i], x, update, loop.left);
         }
-      pass(rest.first, rest.second);
+      pass(next, all.second);
     };
 
     schedule.run(
-      sweeps,
-      /*with residual =*/!backwards,
+      n_sweeps,
+      /*with residual =*/true,
       [&](const Stage &stage, const RowRange &ahead) {
         const RowRange all   = schedule.chunk(stage.chunk);
         Prefetch       fetch = matrix.prefetch(ahead, all.second - all.first);
-        RowKernels::RowLoop loop{
-          all, backwards, fetch, ordinary_nodes->left_sums(stage)};
-        if (stage.kind == Stage::adds_shares)
-          return RowKernels::pass<dim>(rows, loop, u);
-        if (stage.kind == Stage::computes_residual)
+        RowKernels::RowLoop loop{all, fetch, ordinary_nodes->left_sums(stage)};
+        if (stage.computes_residual)
           return RowKernels::residual<dim>(
             rows, loop, x.residual.begin(), f, u);
         const bool update = x.updates_normal_forces &&
@@ -192,7 +159,7 @@ namespace Friction
       u);
 
     // The normal forces of the iterate as it is now, for all that follows.
-    if (x.updates_normal_forces && !backwards)
+    if (x.updates_normal_forces)
       set_normal_forces(problem.contact, x.residual, x.state);
   }
 
@@ -201,10 +168,10 @@ namespace Friction
   template <int dim>
   void
   MonotoneSmoother<dim>::relax_contact_node(
-    const unsigned int         p,
-    Iterate                   &x,
-    const bool                 update_normal_force,
-    const RowKernels::RowLoop &loop) const
+    const unsigned int          p,
+    Iterate                    &x,
+    const bool                  update_normal_force,
+    const RowKernels::LeftSums &left) const
   {
     const NodeBlockMatrix<dim> &matrix = problem.stiffness.blocks();
     const ContactNode<dim>     &node   = problem.contact[p];
@@ -213,8 +180,8 @@ namespace Friction
     // The force that the other nodes leave, r~ = r + A_pp u_p in (6.18); at an
     // interface to other processes with the damping in A_pp. Displacements of
     // the local problem count from where friction does.
-    const NodeValue<dim> product = RowKernels::times<dim>(
-      matrix.rows(), node.node, x.u.begin(), loop.backwards, loop.left);
+    const NodeValue<dim> product =
+      RowKernels::times<dim>(matrix.rows(), node.node, x.u.begin(), left);
     const auto     damped = damped_diagonals.find(node.node);
     Tensor<1, dim> residual, force, old_value;
     NodeValue<dim> from_origin;
@@ -259,8 +226,7 @@ namespace Friction
     for (unsigned int d = 0; d < dim; ++d)
       value[d] = new_value[d];
     x.state.set(p, z.in_contact, z.sticks);
-    RowKernels::add_share<dim>(
-      matrix.rows(), node.node, x.u.begin(), loop.left);
+    RowKernels::add_share<dim>(matrix.rows(), node.node, x.u.begin(), left);
   }
 
 

@@ -24,11 +24,10 @@ namespace Friction
    * convergent for given normal forces, whatever the coarse levels contribute,
    * if the stiffness matrix is positive definite.
    *
-   * Nodes are taken by ascending number; a backward sweep is the exact reverse.
-   * In each chunk of some hundred nodes the contact nodes come last, see
-   * renumber_nodes(), so that the long loop over the ordinary ones needs no
-   * test. Several sweeps follow each other through the cache, see
-   * SweepSchedule.
+   * Nodes are taken by ascending number. In each chunk of some hundred nodes
+   * the contact nodes come last, see renumber_nodes(), so that the long loop
+   * over the ordinary ones needs no test. Several sweeps follow each other
+   * through the cache, see SweepSchedule.
    *
    * With several processes each relaxes its own nodes, against the ghost values
    * of the sweep before. Where a node couples to nodes of others, its diagonal
@@ -52,7 +51,7 @@ namespace Friction
     MonotoneSmoother(const MonotoneSmoother &)                        = delete;
 
     /**
-     * Forward sweeps over all nodes that can move, ascending.
+     * Sweeps over all nodes that can move, ascending.
      * @param x  the iterate, which must be admissible. Its displacement,
      *           phases and, if it updates them, normal forces are changed: each
      *           node then takes its normal force from the intermediate iterate
@@ -62,12 +61,9 @@ namespace Friction
      * @param trust_first_normal_forces  lets the first sweep work with the
      *           given normal forces in any case.
      */
-    void forward(Iterate           &x,
-                 const unsigned int n_sweeps,
-                 const bool         trust_first_normal_forces = false) const;
-
-    /** The same in descending order; the residual is not computed. */
-    void backward(Iterate &x, const unsigned int n_sweeps) const;
+    void relax(Iterate           &x,
+               const unsigned int n_sweeps,
+               const bool         trust_first_normal_forces = false) const;
 
     /** Relaxation of all nodes that can move but are no contact nodes. */
     const GaussSeidel<dim> &
@@ -94,14 +90,10 @@ namespace Friction
     // Contact nodes in the order of their nodes, and by chunk the first one.
     std::vector<unsigned int> in_order, first_of_chunk;
 
-    void sweep(Iterate      &x,
-               const Sweeps &sweeps,
-               const bool    trust_first_normal_forces) const;
-
-    void relax_contact_node(const unsigned int         p,
-                            Iterate                   &x,
-                            const bool                 update_normal_force,
-                            const RowKernels::RowLoop &loop) const;
+    void relax_contact_node(const unsigned int          p,
+                            Iterate                    &x,
+                            const bool                  update_normal_force,
+                            const RowKernels::LeftSums &left) const;
   };
 } // namespace Friction
 

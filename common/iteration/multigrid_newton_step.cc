@@ -93,7 +93,7 @@ namespace Friction
   MultigridNewtonStep<dim>::precondition(VectorType &v, const VectorType &r)
   {
     smoothed = 0.;
-    relaxation.run(smoothed, r, {smoothing_steps, false}, &defect);
+    relaxation.run(smoothed, r, smoothing_steps, &defect);
     if (!strip.is_empty())
       {
         strip.add_solution(smoothed, defect);
@@ -106,7 +106,7 @@ namespace Friction
         find_defect(r, smoothed);
         strip.add_solution(smoothed, defect);
       }
-    relaxation.run(smoothed, r, {smoothing_steps, true});
+    relaxation.run(smoothed, r, smoothing_steps);
     v = smoothed;
   }
 

@@ -13,11 +13,13 @@ namespace Friction
    * Recombines a coarse correction with the last few steps of the iteration.
    *
    * While the phases stay as they are, the iteration is linear, and the cycle a
-   * symmetric preconditioner. The best combination of the new correction with
-   * the previous steps, in the energy norm, then makes a conjugate gradient
-   * method out of it, which turns a contraction of .7 into one of .3. The
-   * products with the stiffness matrix that this needs cost nothing: for the
-   * steps they are differences of residuals that have been computed anyway.
+   * preconditioner. The best combination of the new correction with the
+   * previous steps, in the energy norm, would make a conjugate gradient method
+   * out of it if it were symmetric. It is not quite, since sweeps before and
+   * after the coarser levels have the same order, and that is as good: a
+   * contraction of .7 becomes one of .3. The products with the stiffness matrix
+   * that this needs cost nothing: for the steps they are differences of
+   * residuals that have been computed anyway.
    *
    * A previous step that does not lie in the present free subspace (because a
    * phase has changed) is left out, so that phases are never disturbed. In a

@@ -90,7 +90,7 @@ namespace Friction
     if (relaxes_leaf)
       {
         leaf_defect.reinit(r, true);
-        levels.relax_leaf(v, r, {leaf_sweeps, false}, &leaf_defect);
+        levels.relax_leaf(v, r, leaf_sweeps, &leaf_defect);
         leaf_start    = v;
         v             = 0.;
         leaf_residual = &leaf_defect;
@@ -111,7 +111,7 @@ namespace Friction
     if (relaxes_leaf)
       {
         add_owned(v, 1., leaf_start);
-        levels.relax_leaf(v, r, {leaf_sweeps, true});
+        levels.relax_leaf(v, r, leaf_sweeps);
       }
   }
 
@@ -137,11 +137,11 @@ namespace Friction
     VectorType               &before   = start[k];
     before                             = coarse;
     if (is_untouched[k - 1])
-      relax(k, false, &defect[k]);
+      relax(k, &defect[k]);
     else
       {
         // Defect of everything but the part inherited from below.
-        relax(k, false, nullptr);
+        relax(k, nullptr);
         VectorType &own = work[k];
         own             = 0.;
         transfer.prolongate_and_add(k, own, coarse);
@@ -162,7 +162,7 @@ namespace Friction
     add_owned(before, 1., coarse);
     transfer.prolongate_and_add(k, c, before);
     levels.coupled_ghosts(k).update(c.begin(), dim);
-    relax(k, true, nullptr);
+    relax(k, nullptr);
   }
 
 
@@ -188,11 +188,9 @@ namespace Friction
   template <int dim>
   void
   TruncatedCorrection<dim>::relax(const unsigned int k,
-                                  const bool         backwards,
                                   VectorType        *defect_after)
   {
-    levels.relax(
-      k, correction[k], rhs[k], {smoothing_steps, backwards}, defect_after);
+    levels.relax(k, correction[k], rhs[k], smoothing_steps, defect_after);
   }
 
 

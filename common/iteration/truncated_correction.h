@@ -12,10 +12,13 @@ namespace Friction
    * One multigrid cycle for the truncated linear problem
    * $T(A+\omega'')T\,v = r$: everything below the leaf mesh.
    *
-   * Restricted residuals go down, block Gauss-Seidel relaxes each level
-   * forwards before and backwards after the coarser levels, so that the V-cycle
-   * is a symmetric positive definite operator, and the coarsest level is solved
-   * by CoarsestSolver. With local refinement a level sees residuals from two
+   * Restricted residuals go down, block Gauss-Seidel relaxes each level before
+   * and after the coarser levels, and the coarsest level is solved by
+   * CoarsestSolver. Sweeps are in the same order before and after, which suits
+   * matrices stored by halves, see stores_half. So the V-cycle is not
+   * symmetric, and need not be: each of its steps lowers the energy of the
+   * truncated problem, so that the energy norm of the error shrinks, and v is a
+   * direction of descent. With local refinement a level sees residuals from two
    * sides: those of its own leaf nodes, and those restricted from the next
    * finer level. The finest level has no unknowns of its own, since the leading
    * relaxation has been there: it only passes residuals down and corrections
@@ -77,9 +80,7 @@ namespace Friction
     // Makes the vectors of the levels, in the first cycle.
     virtual void set_up();
 
-    virtual void relax(const unsigned int level,
-                       const bool         backwards,
-                       VectorType        *defect_after);
+    virtual void relax(const unsigned int level, VectorType *defect_after);
 
     virtual void solve_coarsest();
 

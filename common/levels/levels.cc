@@ -161,7 +161,7 @@ namespace Friction
   Levels<dim>::relax(const unsigned int k,
                      VectorType        &c,
                      const VectorType  &b,
-                     const Sweeps      &sweeps,
+                     const unsigned int n_sweeps,
                      VectorType        *defect)
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::coarse_sweeps);
@@ -172,23 +172,20 @@ namespace Friction
     const bool                there_are = stretched.share() > 0.;
     if (there_are && its.needs_factorisation(k))
       stretched.factorise();
-    if (there_are && sweeps.backwards)
-      stretched.run(sweeps, b.begin(), c.begin(), ghosts);
-    const bool is_last = !there_are || sweeps.backwards;
     its.relaxations[k].run(
-      sweeps, b.begin(), c.begin(), ghosts, is_last ? result : nullptr);
-    if (!is_last)
-      stretched.run(sweeps, b.begin(), c.begin(), ghosts, result);
+      n_sweeps, b.begin(), c.begin(), ghosts, there_are ? nullptr : result);
+    if (there_are)
+      stretched.run(n_sweeps, b.begin(), c.begin(), ghosts, result);
   }
 
 
 
   template <int dim>
   void
-  Levels<dim>::relax_leaf(VectorType       &v,
-                          const VectorType &r,
-                          const Sweeps     &sweeps,
-                          VectorType       *defect)
+  Levels<dim>::relax_leaf(VectorType        &v,
+                          const VectorType  &r,
+                          const unsigned int n_sweeps,
+                          VectorType        *defect)
   {
     const PhaseScope phase(problem.communicator(), SolverPhase::coarse_sweeps);
     Parts           &its                 = parts();
@@ -197,7 +194,7 @@ namespace Friction
     if (its.needs_factorisation(n_correction_levels()))
       stretched.factorise(&truncation);
     problem.stiffness.update_ghosts(v);
-    stretched.run(sweeps,
+    stretched.run(n_sweeps,
                   r.begin(),
                   v.begin(),
                   problem.stiffness.ghosts(),

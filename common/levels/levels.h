@@ -129,14 +129,13 @@ namespace Friction
     /**
      * Gauss-Seidel sweeps for B_k c = b at the nodes of a level that are to be
      * relaxed: first at those that belong to no line or plane, then over these,
-     * if there are any; backwards the other way round. The ghosts of @p c must
-     * be valid, and are on return.
+     * if there are any. The ghosts of @p c must be valid, and are on return.
      * @param defect  if not null, b - B_k c on return.
      */
     void relax(const unsigned int k,
                VectorType        &c,
                const VectorType  &b,
-               const Sweeps      &sweeps,
+               const unsigned int n_sweeps,
                VectorType        *defect = nullptr);
 
     /** The share of nodes in lines or planes of strong couplings, which are
@@ -173,10 +172,10 @@ namespace Friction
      * @param r       truncated.
      * @param defect  if not null, the truncated residual on return.
      */
-    void relax_leaf(VectorType       &v,
-                    const VectorType &r,
-                    const Sweeps     &sweeps,
-                    VectorType       *defect = nullptr);
+    void relax_leaf(VectorType        &v,
+                    const VectorType  &r,
+                    const unsigned int n_sweeps,
+                    VectorType        *defect = nullptr);
 
     std::size_t memory_consumption() const;
 

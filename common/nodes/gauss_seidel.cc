@@ -17,29 +17,26 @@ namespace Friction
 
   template <int dim>
   void
-  GaussSeidel<dim>::run(const Sweeps  &sweeps,
-                        const double  *b,
-                        double        *x,
-                        GhostExchange &ghosts,
-                        double        *residual) const
+  GaussSeidel<dim>::run(const unsigned int n_sweeps,
+                        const double      *b,
+                        double            *x,
+                        GhostExchange     &ghosts,
+                        double            *residual) const
   {
     const BlockRows<dim> rows = A->rows();
     const auto           pass = [&](const RowKernels::RowLoop &loop) {
       RowKernels::pass<dim>(rows, loop, x);
     };
     sweep_schedule.run(
-      sweeps,
+      n_sweeps,
       residual != nullptr,
       [&](const Stage &stage, const RowRange &ahead) {
         if (sweep_schedule.is_empty())
           return;
         const RowRange      all   = sweep_schedule.chunk(stage.chunk);
         Prefetch            fetch = A->prefetch(ahead, all.second - all.first);
-        RowKernels::RowLoop loop{
-          all, sweeps.backwards, fetch, left_sums(stage)};
-        if (stage.kind == Stage::adds_shares)
-          pass(loop);
-        else if (stage.kind == Stage::computes_residual)
+        RowKernels::RowLoop loop{all, fetch, left_sums(stage)};
+        if (stage.computes_residual)
           RowKernels::residual<dim>(rows, loop, residual, b, x);
         else
           relax_chunk(stage, loop, b, x, pass);

@@ -30,24 +30,23 @@ namespace Friction
                 const unsigned int chunk_size = nodes_per_chunk);
 
     /**
-     * Several sweeps, and then, if @p residual is not null, the residual
-     * b - A x of all rows.
+     * Several sweeps in the order of the rows, and then, if @p residual is not
+     * null, the residual b - A x of all rows.
      * @param b       one value per component of each owned node.
      * @param x       the same and the ghosts, which must be valid, and are on
      *                return.
      * @param ghosts  exchanges them.
      */
-    void run(const Sweeps  &sweeps,
-             const double  *b,
-             double        *x,
-             GhostExchange &ghosts,
-             double        *residual = nullptr) const;
+    void run(const unsigned int n_sweeps,
+             const double      *b,
+             double            *x,
+             GhostExchange     &ghosts,
+             double            *residual = nullptr) const;
 
     /** A stage of such sweeps over one chunk of schedule(). The rows of @p loop
      * are set here, and its prefetch makes one step for each node.
      * @param do_others  called with each range of rows of the chunk that are
-     * not relaxed, in place of RowKernels::pass(); about the order see
-     * SweepSchedule. */
+     * not relaxed, in place of RowKernels::pass(). */
     template <typename DoOthers>
     void relax_chunk(const Stage         &stage,
                      RowKernels::RowLoop &loop,
@@ -87,11 +86,9 @@ namespace Friction
   {
     const BlockRows<dim>  rows    = A->rows();
     const NodeBlock<dim> *inverse = inverse_diagonals->data();
-    const auto           &parts   = sweep_schedule.parts(stage.chunk);
-    for (unsigned int k = 0; k < parts.size(); ++k)
+    for (const auto &part : sweep_schedule.parts(stage.chunk))
       {
-        const auto &part = parts[loop.backwards ? parts.size() - 1 - k : k];
-        loop.rows        = part.rows;
+        loop.rows = part.rows;
         if (part.is_relaxed)
           RowKernels::relax<dim>(rows, inverse, loop, b, x);
         else

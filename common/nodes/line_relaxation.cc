@@ -315,18 +315,18 @@ namespace Friction
 
   template <int dim>
   void
-  LineRelaxation<dim>::run(const Sweeps  &sweeps,
-                           const double  *b,
-                           double        *x,
-                           GhostExchange &ghosts,
-                           double        *residual) const
+  LineRelaxation<dim>::run(const unsigned int n_sweeps,
+                           const double      *b,
+                           double            *x,
+                           GhostExchange     &ghosts,
+                           double            *residual) const
   {
     Assert(is_factorised || !has_lines(), ExcInvalidState());
     const unsigned int n = starts.size() - 1;
-    for (unsigned int s = 0; s < sweeps.number; ++s)
+    for (unsigned int s = 0; s < n_sweeps; ++s)
       {
         for (unsigned int l = 0; l < n; ++l)
-          relax_line(sweeps.backwards ? n - 1 - l : l, b, x);
+          relax_line(l, b, x);
         ghosts.update(x, dim);
       }
     if (residual != nullptr)

@@ -95,11 +95,11 @@ namespace Friction
      * @param x       the same and the ghosts, which must be valid, and are on
      *                return; truncated.
      */
-    void run(const Sweeps  &sweeps,
-             const double  *b,
-             double        *x,
-             GhostExchange &ghosts,
-             double        *residual = nullptr) const;
+    void run(const unsigned int n_sweeps,
+             const double      *b,
+             double            *x,
+             GhostExchange     &ghosts,
+             double            *residual = nullptr) const;
 
     std::size_t memory_consumption() const;
 

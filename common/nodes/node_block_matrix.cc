@@ -100,8 +100,7 @@ namespace Friction
   NodeBlockMatrix<dim>::row_times(const unsigned int row, const double *x) const
   {
     const std::size_t stored = stored_end(row), end = row_end(row);
-    NodeValue<dim>    result =
-      RowKernels::times<dim>(rows(), row, x, /*backwards =*/false);
+    NodeValue<dim>    result = RowKernels::times<dim>(rows(), row, x);
     for (std::size_t e = stored; e < end; ++e)
       {
         const double *image = mirror_image(row, e - stored);
@@ -151,11 +150,7 @@ namespace Friction
   {
     Prefetch nothing;
     RowKernels::residual<dim>(
-      rows(),
-      {{0, n_rows()}, false, nothing, {partial_sums(), true, true}},
-      r,
-      b,
-      x);
+      rows(), {{0, n_rows()}, nothing, {partial_sums(), true, true}}, r, b, x);
   }
 
 

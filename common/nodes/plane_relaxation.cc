@@ -171,21 +171,18 @@ namespace Friction
 
   template <int dim>
   void
-  PlaneRelaxation<dim>::run(const Sweeps  &sweeps,
-                            const double  *b,
-                            double        *x,
-                            GhostExchange &ghosts,
-                            double        *residual) const
+  PlaneRelaxation<dim>::run(const unsigned int n_sweeps,
+                            const double      *b,
+                            double            *x,
+                            GhostExchange     &ghosts,
+                            double            *residual) const
   {
     Assert(is_factorised || problems.empty(), ExcInvalidState());
-    const unsigned int n = problems.size();
-    for (unsigned int s = 0; s < sweeps.number; ++s)
+    for (unsigned int s = 0; s < n_sweeps; ++s)
       {
-        for (unsigned int k = 0; k < n; ++k)
+        for (const auto &problem : problems)
           {
-            const Problem &problem =
-              *problems[sweeps.backwards ? n - 1 - k : k];
-            const std::vector<unsigned int> &nodes = problem.nodes();
+            const std::vector<unsigned int> &nodes = problem->nodes();
             values.resize(dim * nodes.size());
             for (unsigned int i = 0; i < nodes.size(); ++i)
               {
@@ -193,7 +190,7 @@ namespace Friction
                   *A, truncation, nodes[i], b, x);
                 std::copy(r.begin(), r.end(), values.begin() + dim * i);
               }
-            problem.solve(values);
+            problem->solve(values);
             for (unsigned int i = 0; i < nodes.size(); ++i)
               for (unsigned int d = 0; d < dim; ++d)
                 x[dim * nodes[i] + d] += values[dim * i + d];

@@ -96,11 +96,11 @@ namespace Friction
      * Sweeps over the planes, and then, if @p residual is not null, the
      * (truncated) residual of all rows; arguments as in LineRelaxation::run().
      */
-    void run(const Sweeps  &sweeps,
-             const double  *b,
-             double        *x,
-             GhostExchange &ghosts,
-             double        *residual = nullptr) const;
+    void run(const unsigned int n_sweeps,
+             const double      *b,
+             double            *x,
+             GhostExchange     &ghosts,
+             double            *residual = nullptr) const;
 
     std::size_t memory_consumption() const;
 

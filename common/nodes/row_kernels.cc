@@ -234,10 +234,9 @@ namespace Friction
 
 
 
-      // Adds up n blocks times values, from the first one on, forwards or
-      // backwards by steps of 1 or -1. Two sums, so that an addition need not
-      // wait for the one before it.
-      template <int step, int dim, typename Four>
+      // Adds up n blocks times values, from the first one on. Two sums, so that
+      // an addition need not wait for the one before it.
+      template <int dim, typename Four>
       inline DEAL_II_ALWAYS_INLINE void
       add_blocks(Sum<dim, Four>       &sum,
                  const StoredRow<dim> &row,
@@ -252,10 +251,10 @@ namespace Friction
         for (; n > 1; n -= 2)
           {
             sum.add(block, x + dim * static_cast<std::size_t>(column[0]));
-            other.add(block + size * step,
-                      x + dim * static_cast<std::size_t>(column[step]));
-            column += 2 * step;
-            block += 2 * size * step;
+            other.add(block + size,
+                      x + dim * static_cast<std::size_t>(column[1]));
+            column += 2;
+            block += 2 * size;
           }
         if (n > 0)
           sum.add(block, x + dim * static_cast<std::size_t>(column[0]));
@@ -304,14 +303,14 @@ namespace Friction
 
 
       // The diagonal block comes in the end, when the others are under way.
-      template <int dim, typename Four, int step>
+      template <int dim, typename Four>
       inline DEAL_II_ALWAYS_INLINE void
       add_row(Sum<dim, Four>       &sum,
               const StoredRow<dim> &row,
               const double         *x,
               const double         *xi)
       {
-        add_blocks<step>(sum, row, step > 0 ? 1 : row.n - 1, row.n - 1, x);
+        add_blocks(sum, row, 1, row.n - 1, x);
         sum.add(row.blocks, xi);
       }
 
@@ -322,19 +321,12 @@ namespace Friction
       times_body(const BlockRows<dim> &A,
                  const unsigned int    row,
                  const double         *x,
-                 const bool            backwards,
                  double               *product)
       {
         const StoredRow<dim> blocks(A, row);
         Sum<dim, Four>       sum;
         if (blocks.n > 0)
-          {
-            const double *xi = x + dim * static_cast<std::size_t>(row);
-            if (backwards)
-              add_row<dim, Four, -1>(sum, blocks, x, xi);
-            else
-              add_row<dim, Four, 1>(sum, blocks, x, xi);
-          }
+          add_row(sum, blocks, x, x + dim * static_cast<std::size_t>(row));
         sum.get(product);
       }
 
@@ -348,12 +340,8 @@ namespace Friction
       {
         const BlockRows<dim> A     = matrix;
         Prefetch             fetch = loop.prefetch;
-        // What a row adds goes to rows that have been passed already, if
-        // backwards, or will be.
-        for (unsigned int n = loop.rows.first; n < loop.rows.second; ++n)
+        for (std::size_t i = loop.rows.first; i < loop.rows.second; ++i)
           {
-            const std::size_t i =
-              loop.backwards ? loop.rows.second - 1 - (n - loop.rows.first) : n;
             fetch.step();
             if (loop.left.clear)
               clear(loop.left.sums + n_partial_sums * i);
@@ -388,7 +376,7 @@ namespace Friction
             Sum<dim, Four>       sum;
             if (row.n > 0)
               {
-                add_row<dim, Four, 1>(sum, row, x, xi);
+                add_row(sum, row, x, xi);
                 add_share_body<dim, Four>(A, row, xi, loop.left);
               }
             double product[dim];
@@ -437,9 +425,9 @@ namespace Friction
 
             const double  *xi = x + dim * i;
             Sum<dim, Four> twice, once;
-            add_blocks<1>(twice, row, 1, larger - 1, x);
+            add_blocks(twice, row, 1, larger - 1, x);
             once.add(row.blocks, xi);
-            add_blocks<1>(once, row, larger, ghosts - larger, x);
+            add_blocks(once, row, larger, ghosts - larger, x);
             double products[2][dim];
             twice.get(products[0]);
             once.get(products[1]);
@@ -451,18 +439,17 @@ namespace Friction
 
 
 
-      // Rows are read from front to back or from back to front, like the
-      // matrix: processors foresee what is read next, as long as it goes on in
-      // one direction. The node that has just been relaxed comes last in either
-      // direction: in the order of the row, see NodePattern, or in the sums of
-      // the left. So the processor can begin with a row while it is not yet
-      // through with the one before.
+      // Rows are read from front to back, as is the matrix: processors foresee
+      // what is read next, as long as it goes on in one direction. The node
+      // that has just been relaxed comes last: in the order of the row, see
+      // NodePattern, or in the sums of the left. So the processor can begin
+      // with a row while it is not yet through with the one before.
       //
       // In two dimensions rows are so short that this is not enough. There the
       // last block is multiplied by the inverse beforehand: from one relaxed
       // node to the next there is then a single product instead of two, one
       // after the other, and a sum.
-      template <int dim, typename Four, int step>
+      template <int dim, typename Four>
       inline DEAL_II_ALWAYS_INLINE void
       relax_body(const BlockRows<dim> &matrix,
                  const NodeBlock<dim> *inverses,
@@ -470,14 +457,11 @@ namespace Friction
                  const double         *b,
                  double               *x)
       {
-        constexpr bool       backwards = (step < 0);
-        constexpr int        size      = dim * dim;
-        const BlockRows<dim> A         = matrix;
-        const RowRange       rows      = loop.rows;
-        const LeftSums       left      = loop.left;
-        Prefetch             fetch     = loop.prefetch;
-        std::size_t          i = backwards ? rows.second - 1 : rows.first;
-        for (unsigned int n = rows.second - rows.first; n > 0; --n, i += step)
+        constexpr int        size  = dim * dim;
+        const BlockRows<dim> A     = matrix;
+        const LeftSums       left  = loop.left;
+        Prefetch             fetch = loop.prefetch;
+        for (std::size_t i = loop.rows.first; i < loop.rows.second; ++i)
           {
             fetch.step();
             const StoredRow<dim> row(A, i);
@@ -491,9 +475,8 @@ namespace Friction
               {
                 // The others, but for the last one, and then the diagonal.
                 const bool        has_last = (row.n > 1);
-                const std::size_t first    = backwards ? row.n - 1 : 1,
-                                  last     = backwards ? 1 : row.n - 1;
-                add_blocks<step>(sum, row, first, row.n - 1 - has_last, x);
+                const std::size_t last     = row.n - 1;
+                add_blocks(sum, row, 1, last - has_last, x);
                 sum.add(row.blocks, xi);
 
                 const Pair inverse0 = pair(inverse),
@@ -518,7 +501,7 @@ namespace Friction
               }
             else
               {
-                add_row<dim, Four, step>(sum, row, x, xi);
+                add_row(sum, row, x, xi);
                 double product[dim], defect[dim];
                 sum.get(product);
                 take_sums<dim>(i, left, product);
@@ -547,10 +530,9 @@ namespace Friction
       times_avx2(const BlockRows<dim> &A,
                  const unsigned int    row,
                  const double         *x,
-                 const bool            backwards,
                  double               *product)
       {
-        times_body<dim, OneQuad>(A, row, x, backwards, product);
+        times_body<dim, OneQuad>(A, row, x, product);
       }
 
       template <int dim>
@@ -597,10 +579,7 @@ namespace Friction
                  const double         *b,
                  double               *x)
       {
-        if (loop.backwards)
-          relax_body<dim, OneQuad, -1>(A, inverses, loop, b, x);
-        else
-          relax_body<dim, OneQuad, 1>(A, inverses, loop, b, x);
+        relax_body<dim, OneQuad>(A, inverses, loop, b, x);
       }
 #endif
     } // namespace
@@ -609,18 +588,15 @@ namespace Friction
 
     template <int dim>
     NodeValue<dim>
-    times(const BlockRows<dim> &A,
-          const unsigned int    row,
-          const double         *x,
-          const bool            backwards)
+    times(const BlockRows<dim> &A, const unsigned int row, const double *x)
     {
       NodeValue<dim> product;
 #ifdef FRICTION_AVX2
       if (instructions_in_use == Instructions::avx2)
-        times_avx2<dim>(A, row, x, backwards, product.data());
+        times_avx2<dim>(A, row, x, product.data());
       else
 #endif
-        times_body<dim, TwoPairs>(A, row, x, backwards, product.data());
+        times_body<dim, TwoPairs>(A, row, x, product.data());
       return product;
     }
 
@@ -631,10 +607,9 @@ namespace Friction
     times(const BlockRows<dim> &A,
           const unsigned int    row,
           const double         *x,
-          const bool            backwards,
           const LeftSums       &left)
     {
-      NodeValue<dim> product = times<dim>(A, row, x, backwards);
+      NodeValue<dim> product = times<dim>(A, row, x);
       take_sums<dim>(row, left, product.data());
       return product;
     }
@@ -717,38 +692,34 @@ namespace Friction
       if (instructions_in_use == Instructions::avx2)
         return relax_avx2<dim>(A, inverses, loop, b, x);
 #endif
-      if (loop.backwards)
-        relax_body<dim, TwoPairs, -1>(A, inverses, loop, b, x);
-      else
-        relax_body<dim, TwoPairs, 1>(A, inverses, loop, b, x);
+      relax_body<dim, TwoPairs>(A, inverses, loop, b, x);
     }
 
 
 
-#define INSTANTIATE(dim)                                                     \
-  template NodeValue<dim> times<dim>(                                        \
-    const BlockRows<dim> &, const unsigned int, const double *, const bool); \
-  template NodeValue<dim> times<dim>(const BlockRows<dim> &,                 \
-                                     const unsigned int,                     \
-                                     const double *,                         \
-                                     const bool,                             \
-                                     const LeftSums &);                      \
-  template void           pass<dim>(                                         \
-    const BlockRows<dim> &, const RowLoop &, const double *);      \
-  template void   add_share<dim>(const BlockRows<dim> &,                     \
-                               const unsigned int,                         \
-                               const double *,                             \
-                               const LeftSums &);                          \
-  template void   residual<dim>(const BlockRows<dim> &,                      \
-                              const RowLoop &,                             \
-                              double *,                                    \
-                              const double *,                              \
-                              const double *);                             \
-  template double energy<dim>(const BlockRows<dim> &, const double *);       \
-  template void   relax<dim>(const BlockRows<dim> &,                         \
-                           const NodeBlock<dim> *,                         \
-                           const RowLoop &,                                \
-                           const double *,                                 \
+#define INSTANTIATE(dim)                                                \
+  template NodeValue<dim> times<dim>(                                   \
+    const BlockRows<dim> &, const unsigned int, const double *);        \
+  template NodeValue<dim> times<dim>(const BlockRows<dim> &,            \
+                                     const unsigned int,                \
+                                     const double *,                    \
+                                     const LeftSums &);                 \
+  template void           pass<dim>(                                    \
+    const BlockRows<dim> &, const RowLoop &, const double *); \
+  template void   add_share<dim>(const BlockRows<dim> &,                \
+                               const unsigned int,                    \
+                               const double *,                        \
+                               const LeftSums &);                     \
+  template void   residual<dim>(const BlockRows<dim> &,                 \
+                              const RowLoop &,                        \
+                              double *,                               \
+                              const double *,                         \
+                              const double *);                        \
+  template double energy<dim>(const BlockRows<dim> &, const double *);  \
+  template void   relax<dim>(const BlockRows<dim> &,                    \
+                           const NodeBlock<dim> *,                    \
+                           const RowLoop &,                           \
+                           const double *,                            \
                            double *);
     INSTANTIATE(2)
     INSTANTIATE(3)

@@ -69,10 +69,9 @@ namespace Friction
    * its node, it adds its blocks, transposed, times that value to sums that
    * belong to the rows with larger numbers. When it gets there, it finds
    * complete what is to the left of the diagonal: with the new values of a
-   * sweep, as Gauss-Seidel wants them. In descending order it is to the left
-   * that old values are wanted, and these sums are those that the sweep before
-   * has left behind, see SweepSchedule. So each block is read once and used
-   * twice.
+   * sweep, as Gauss-Seidel wants them. So each block is read once and used
+   * twice. In descending order the old values would be wanted there, and a
+   * product before the first sweep; all sweeps are in ascending order.
    *
    * In three dimensions a sweep waits for memory, and this makes it twice as
    * fast. In two, blocks are as small as the sums that they are added to: what
@@ -105,29 +104,19 @@ namespace Friction
       bool add;
     };
 
-    /** The rows that a kernel goes through, in which direction, what it has
+    /** The rows that a kernel goes through, in ascending order, what it has
      * brought into the cache meanwhile, and what becomes of sums. */
     struct RowLoop
     {
       RowRange  rows;
-      bool      backwards;
       Prefetch &prefetch;
       LeftSums  left;
     };
 
-    /**
-     * What is stored of row @p row of A, times x.
-     * @param backwards  whether the caller takes rows in descending order and
-     *                   changes the value of each: the sum then ends with
-     *                   the values that were changed last, so that the
-     *                   processor can begin with it before it has them. The
-     *                   two sums differ in rounding only.
-     */
+    /** What is stored of row @p row of A, times x. */
     template <int dim>
-    NodeValue<dim> times(const BlockRows<dim> &A,
-                         const unsigned int    row,
-                         const double         *x,
-                         const bool            backwards);
+    NodeValue<dim>
+    times(const BlockRows<dim> &A, const unsigned int row, const double *x);
 
     /** Row @p row of A x, with the sums of its left, which are cleared if they
      * are to be. */
@@ -135,7 +124,6 @@ namespace Friction
     NodeValue<dim> times(const BlockRows<dim> &A,
                          const unsigned int    row,
                          const double         *x,
-                         const bool            backwards,
                          const LeftSums       &left);
 
     /** Adds the share of rows in the sums of others, if it is to be, and
@@ -151,8 +139,7 @@ namespace Friction
                    const double         *x,
                    const LeftSums       &left);
 
-    /** r = b - A x for some rows, forwards in any case; A x, if @p b is a null
-     * pointer. */
+    /** r = b - A x for some rows; A x, if @p b is a null pointer. */
     template <int dim>
     void residual(const BlockRows<dim> &A,
                   const RowLoop        &loop,

@@ -57,30 +57,23 @@ namespace Friction
     }
 
     /** Sweeps over lines and then one sweep over planes, whatever their number
-     * is, backwards the other way round: a plane costs several times as much,
-     * and a second sweep saves less than it takes. Arguments as those of
-     * LineRelaxation::run(). There must be lines or planes. */
+     * is: a plane costs several times as much, and a second sweep saves less
+     * than it takes. Arguments as those of LineRelaxation::run(). There must be
+     * lines or planes. */
     void
-    run(const Sweeps  &sweeps,
-        const double  *b,
-        double        *x,
-        GhostExchange &ghosts,
-        double        *residual = nullptr) const
+    run(const unsigned int n_sweeps,
+        const double      *b,
+        double            *x,
+        GhostExchange     &ghosts,
+        double            *residual = nullptr) const
     {
       Assert(share() > 0., dealii::ExcInvalidState());
       const bool has_lines  = lines.has_lines(),
                  has_planes = planes.share_of_nodes() > 0.;
-      const Sweeps once     = {std::min(1u, sweeps.number), sweeps.backwards};
-      if (has_planes && sweeps.backwards)
-        planes.run(once, b, x, ghosts, has_lines ? nullptr : residual);
       if (has_lines)
-        lines.run(sweeps,
-                  b,
-                  x,
-                  ghosts,
-                  sweeps.backwards || !has_planes ? residual : nullptr);
-      if (has_planes && !sweeps.backwards)
-        planes.run(once, b, x, ghosts, residual);
+        lines.run(n_sweeps, b, x, ghosts, has_planes ? nullptr : residual);
+      if (has_planes)
+        planes.run(std::min(1u, n_sweeps), b, x, ghosts, residual);
     }
 
     std::size_t

@@ -35,30 +35,23 @@ namespace Friction
     add(done, n_nodes, false);
 
     at_interface.assign(n_chunks(), 0);
-    reach_up.resize(n_chunks());
-    reach_down.resize(n_chunks());
+    reach.resize(n_chunks());
     for (unsigned int c = 0; c < n_chunks(); ++c)
       {
-        unsigned int first = chunk_starts[c], last = chunk_starts[c + 1] - 1;
+        unsigned int last = chunk_starts[c + 1] - 1;
         for (std::size_t e = matrix.row_begin(chunk_starts[c]);
              e < matrix.row_begin(chunk_starts[c + 1]);
              ++e)
           if (matrix.column(e) < n_nodes)
-            {
-              first = std::min(first, matrix.column(e));
-              last  = std::max(last, matrix.column(e));
-            }
+            last = std::max(last, matrix.column(e));
           else
             at_interface[c] = 1;
-        reach_down[c] = chunk_of(first);
-        reach_up[c]   = chunk_of(last);
+        reach[c] = chunk_of(last);
       }
 
     // A stage never overtakes, so that the bounds may as well be monotone.
     for (unsigned int c = 1; c < n_chunks(); ++c)
-      reach_up[c] = std::max(reach_up[c], reach_up[c - 1]);
-    for (unsigned int c = n_chunks(); c-- > 1;)
-      reach_down[c - 1] = std::min(reach_down[c - 1], reach_down[c]);
+      reach[c] = std::max(reach[c], reach[c - 1]);
   }
 
 

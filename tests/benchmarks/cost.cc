@@ -63,7 +63,7 @@ namespace benchmark_cost
       const MonotoneSmoother<dim> smoother(which);
       VectorType                  u = solution;
       Iterate                     x(u, state, which.has_friction());
-      return best_of(10, [&]() { smoother.backward(x, 3); });
+      return best_of(10, [&]() { smoother.relax(x, 3); });
     };
     return seconds(problem, solution_state) /
       seconds(without, ContactState(0, false));
@@ -81,7 +81,7 @@ namespace benchmark_cost
     VectorType                  u     = solution;
     ContactState                state = solution_state;
     Iterate                     x(u, state, true);
-    const double seconds = best_of(10, [&]() { smoother.backward(x, 1); });
+    const double seconds = best_of(10, [&]() { smoother.relax(x, 1); });
     // What a sweep must read and write at least: blocks and column numbers, row
     // starts and inverse diagonals, right hand side, and the vector twice.
     const auto  &A = problem.stiffness.blocks();

@@ -2,10 +2,10 @@
 // leaf matrix of a scene's first mesh, for a plain loop, which the library
 // used to have and is kept here for comparison, and for the library's kernels
 // with each kind of instructions that the processor has; one sweep, three that
-// follow each other through the cache, and three with the residual, forwards
-// and backwards. And a product with the matrix, A x, and x.Ax. In three
-// dimensions the library stores half of the matrix, and the plain loop all of
-// it. All are measured in turn, many times, and the least is printed.
+// follow each other through the cache, and three and six with the residual, as
+// the iteration has them. And a product with the matrix, A x, and x.Ax. In
+// three dimensions the library stores half of the matrix, and the plain loop
+// all of it. All are measured in turn, many times, and the least is printed.
 //
 // Beside it what part that is of what the machine can do: of memory, as
 // measured by a triad a = b + s c, and of arithmetic, as measured by products
@@ -135,15 +135,10 @@ namespace benchmark_sweeps
     }
 
     void
-    relax(const RowRange &rows,
-          const double   *b,
-          double         *x,
-          const bool      backwards) const
+    relax(const RowRange &rows, const double *b, double *x) const
     {
-      for (unsigned int n = 0; n < rows.second - rows.first; ++n)
+      for (unsigned int i = rows.first; i < rows.second; ++i)
         {
-          const unsigned int i =
-            backwards ? rows.second - 1 - n : rows.first + n;
           NodeValue<dim> defect = row_times(i, x);
           for (int d = 0; d < dim; ++d)
             defect[d] = b[dim * i + d] - defect[d];
@@ -205,11 +200,11 @@ namespace benchmark_sweeps
     const std::vector<Instructions> instructions = available_instructions();
     const unsigned int              n_columns    = 1 + instructions.size();
     const auto                      sweep = [&](const unsigned int column,
-                           const Sweeps      &sweeps,
+                           const unsigned int n_sweeps,
                            const bool         with_residual) {
       if (column > 0)
         {
-          relaxation.run(sweeps,
+          relaxation.run(n_sweeps,
                          b.data(),
                          x.data(),
                          no_ghosts,
@@ -217,14 +212,14 @@ namespace benchmark_sweeps
           return;
         }
       schedule.run(
-        sweeps,
+        n_sweeps,
         with_residual,
         [&](const Stage &stage, RowRange) {
           const RowRange rows = schedule.chunk(stage.chunk);
-          if (stage.kind == Stage::computes_residual)
+          if (stage.computes_residual)
             plain.residual(rows, r.data(), b.data(), x.data());
-          else if (stage.kind == Stage::relaxes)
-            plain.relax(rows, b.data(), x.data(), sweeps.backwards);
+          else
+            plain.relax(rows, b.data(), x.data());
         },
         no_ghosts,
         x.data());
@@ -265,24 +260,23 @@ namespace benchmark_sweeps
     };
     std::vector<Row>          rows;
     const std::vector<double> never(n_columns, 1e300);
-    const auto                add_sweeps = [&](const Sweeps &sweeps,
-                                const bool    with_residual) {
+    const auto                add_sweeps = [&](const unsigned int n_sweeps,
+                                const bool         with_residual) {
       rows.push_back(
-        {std::to_string(sweeps.number) +
-           (sweeps.backwards ? " backwards" : " forwards") +
+        {std::to_string(n_sweeps) + (n_sweeps == 1 ? " sweep" : " sweeps") +
            (with_residual ? ", and residual" : ""),
-         sweeps.number + with_residual,
+         n_sweeps + with_residual,
          bytes_of_sweep,
-         (sweeps.number + with_residual) * (1. * A.n_blocks() + n),
-         [&sweep, sweeps, with_residual](const unsigned int column) {
-           sweep(column, sweeps, with_residual);
+         (n_sweeps + with_residual) * (1. * A.n_blocks() + n),
+         [&sweep, n_sweeps, with_residual](const unsigned int column) {
+           sweep(column, n_sweeps, with_residual);
          },
          never});
     };
-    for (const bool backwards : {false, true})
-      for (const unsigned int number : {1, 3})
-        add_sweeps({number, backwards}, false);
-    add_sweeps({3, false}, true);
+    for (const unsigned int n_sweeps : {1, 3})
+      add_sweeps(n_sweeps, false);
+    for (const unsigned int n_sweeps : {3, 6})
+      add_sweeps(n_sweeps, true);
     rows.push_back(
       {"A x",
        1,

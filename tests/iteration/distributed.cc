@@ -10,10 +10,10 @@
 // - the solution, with the same phases, certificate and energy.
 //
 // Sweeps and cycles are not the same, since each process relaxes its own nodes
-// while the others relax theirs. What they have to be instead: a cycle is
-// symmetric and positive, a sweep keeps the iterate admissible and does not
-// raise the energy for given normal forces, neither that of several processes
-// nor that evaluated by one alone.
+// while the others relax theirs. What they have to be instead: a cycle makes no
+// error larger, a sweep keeps the iterate admissible and does not raise the
+// energy for given normal forces, neither that of several processes nor that
+// evaluated by one alone.
 
 #include <common/algorithms/contact_solver.h>
 #include <common/iteration/monotone_smoother.h>
@@ -30,6 +30,7 @@
 #include <tests/support/discretized.h>
 #include <tests/support/random_problem.h>
 #include <tests/support/test.h>
+#include <tests/support/truncated_values.h>
 
 using namespace Tests;
 
@@ -385,32 +386,30 @@ namespace test_distributed
     const Truncation<dim>    truncation = all.truncation(seed, 1.);
     levels.update(truncation);
 
-    const auto random_residual = [&](const unsigned int salt) {
-      VectorType r(d.constraints().partitioner());
-      for (unsigned int i = 0; i < d.constraints().n_owned_nodes(); ++i)
-        if (!d.constraints().is_hanging(i))
-          {
-            Random random = random_at(all.points[i], salt);
-            for (unsigned int c = 0; c < dim; ++c)
-              r.local_element(dim * i + c) = random(-1., 1.);
-          }
-      truncation.apply(r.begin());
-      return r;
-    };
-    const VectorType r = random_residual(1), s = random_residual(2);
-    VectorType       Cr(r), Cs(s);
+    // An error, the residual that belongs to it, and what a cycle makes of it.
+    VectorType error(d.constraints().partitioner());
+    for (unsigned int i = 0; i < d.constraints().n_owned_nodes(); ++i)
+      if (!d.constraints().is_fixed(i))
+        {
+          Random random = random_at(all.points[i], seed + 1);
+          for (unsigned int c = 0; c < dim; ++c)
+            error.local_element(dim * i + c) = random(-1., 1.);
+        }
+    truncation.apply(error.begin());
+    const VectorType r = truncated_product(d, truncation, error);
+    VectorType       Cr(r);
     cycle.apply(Cr, r);
-    cycle.apply(Cs, s);
-    report(std::abs(Cr * s - r * Cs) / std::sqrt((Cr * r) * (Cs * s)),
-           1e-13,
-           "a coarse cycle is symmetric");
-    report(Cr * r > 0 && Cs * s > 0 ? 0. : 1., 0., "and positive");
+    const double before = error * r, gained = Cr * r;
+    error -= Cr;
+    const double after = error * truncated_product(d, truncation, error);
+    report(after / before, 1., "a coarse cycle makes no error larger");
+    report(gained > 0 ? 0. : 1., 0., "and its correction leads downhill");
   }
 
 
 
-  // Sweeps from a random admissible start, forwards and backwards, with random
-  // normal forces that are kept.
+  // Sweeps from a random admissible start, with random normal forces that are
+  // kept.
   template <int dim>
   void
   check_sweeps(const Problem<dim> &all,
@@ -489,7 +488,7 @@ namespace test_distributed
            penetration = functional.largest_penetration(u), fall = 0;
     for (unsigned int step = 0; step < 20; ++step)
       {
-        sweep(smoother, u, state, false, step % 2 == 1);
+        sweep(smoother, u, state, false);
         const double next = functional.energy(u, state);
         disagreement      = std::max(
           disagreement,
@@ -520,12 +519,12 @@ namespace test_distributed
     d.stiffness().update_ghosts(v);
     const std::size_t in_an_exchange = n_messages() - before;
     Iterate           x(v, w);
-    smoother.forward(x, 3);
+    smoother.relax(x, 3);
     report(n_messages() - before == 5 * in_an_exchange ? 0. : 1.,
            0.,
            "there is one exchange of ghosts per sweep, and one before them");
     for (unsigned int step = 0; step < 3; ++step)
-      sweep(smoother, u, state, false, false);
+      sweep(smoother, u, state, false);
     double difference = 0;
     for (unsigned int i = 0; i < u.locally_owned_size(); ++i)
       difference =
@@ -615,11 +614,12 @@ namespace test_distributed
               (state.in_contact(p) && state.sticks(p) != alone_state.sticks(q));
           }
         report(n_different, 0., name + "so are all phases");
+        // A process has but ten of the nodes here.
         report(std::max(0.,
                         static_cast<double>(found.cycles.size()) -
                           static_cast<double>(expected.cycles.size())),
-               2.,
-               name + "at most two cycles more");
+               3.,
+               name + "at most three cycles more");
       }
   }
 

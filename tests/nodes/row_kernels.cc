@@ -155,87 +155,65 @@ namespace test_row_kernels
         residual_error =
           std::max(residual_error, relative_difference(expected, r));
 
-        for (const bool backwards : {false, true})
+        std::vector<double> x = start, plain = start;
+        for (unsigned int sweep = 0; sweep < 3; ++sweep)
+          for (const RowRange &range : nodes)
+            for (unsigned int i = range.first; i < range.second; ++i)
+              plain_relaxation(A, inverses, i, b, plain);
+        relaxation.run(3, b.data(), x.data(), no_ghosts, r.data());
+        const auto residual_at = [&](const std::vector<double> &where) {
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              const std::vector<double> product = plain_product(A, i, where);
+              for (unsigned int d = 0; d < dim; ++d)
+                expected[dim * i + d] = b[dim * i + d] - product[d];
+            }
+        };
+        residual_at(plain);
+        sweep_error = std::max({sweep_error,
+                                relative_difference(plain, x),
+                                relative_difference(expected, r)});
+
+        // Row by row, as contact nodes are relaxed.
+        x = plain                       = start;
+        double                    *sums = A.partial_sums();
+        const RowKernels::LeftSums left{sums, true, true};
+        for (unsigned int i = 0; i < n; ++i)
           {
-            std::vector<double> x = start, plain = start;
-            for (unsigned int sweep = 0; sweep < 3; ++sweep)
-              for (unsigned int k = 0; k < nodes.size(); ++k)
-                {
-                  const RowRange range =
-                    nodes[backwards ? nodes.size() - 1 - k : k];
-                  for (unsigned int i = 0; i < range.second - range.first; ++i)
-                    plain_relaxation(A,
-                                     inverses,
-                                     backwards ? range.second - 1 - i
-                                               : range.first + i,
-                                     b,
-                                     plain);
-                }
-            relaxation.run(
-              {3, backwards}, b.data(), x.data(), no_ghosts, r.data());
-            for (unsigned int i = 0; i < n; ++i)
-              {
-                const std::vector<double> product = plain_product(A, i, plain);
-                for (unsigned int d = 0; d < dim; ++d)
-                  expected[dim * i + d] = b[dim * i + d] - product[d];
-              }
-            sweep_error = std::max({sweep_error,
-                                    relative_difference(plain, x),
-                                    relative_difference(expected, r)});
-
-            // Row by row, as contact nodes are relaxed.
-            x = plain     = start;
-            double  *sums = A.partial_sums();
-            Prefetch nothing;
-            if (backwards)
-              RowKernels::pass<dim>(
-                A.rows(),
-                {{0, n}, backwards, nothing, {sums, false, true}},
-                x.data());
-            for (unsigned int k = 0; k < n; ++k)
-              {
-                const unsigned int i = backwards ? n - 1 - k : k;
-                if (A.is_empty(i))
-                  continue;
-                const RowKernels::LeftSums left{sums, true, !backwards};
-                const NodeValue<dim>       product = RowKernels::times<dim>(
-                  A.rows(), i, x.data(), backwards, left);
-                for (unsigned int q = 0; q < dim; ++q)
-                  for (unsigned int c = 0; c < dim; ++c)
-                    x[dim * i + q] +=
-                      inverses[i][c * dim + q] * (b[dim * i + c] - product[c]);
-                RowKernels::add_share<dim>(A.rows(), i, x.data(), left);
-                plain_relaxation(A, inverses, i, b, plain);
-              }
-            row_error = std::max(row_error, relative_difference(plain, x));
-
-            // Each loop over all rows leaves the sums as it has found them.
-            for (const NodeRanges &some : {nodes, NodeRanges()})
-              for (const unsigned int n_sweeps : {0, 1, 2})
-                for (const bool with_residual : {false, true})
-                  {
-                    GaussSeidel<dim>(A, inverses, some, 16)
-                      .run({n_sweeps, backwards},
-                           b.data(),
-                           x.data(),
-                           no_ghosts,
-                           with_residual ? r.data() : nullptr);
-                    for (unsigned int i = 0; i < n; ++i)
-                      {
-                        const std::vector<double> product =
-                          plain_product(A, i, x);
-                        for (unsigned int d = 0; d < dim; ++d)
-                          expected[dim * i + d] = b[dim * i + d] - product[d];
-                      }
-                    if (with_residual)
-                      row_error =
-                        std::max(row_error, relative_difference(expected, r));
-                    for (unsigned int s = 0;
-                         stores_half<dim> && s < RowKernels::n_partial_sums * n;
-                         ++s)
-                      left_over = std::max(left_over, std::abs(sums[s]));
-                  }
+            if (A.is_empty(i))
+              continue;
+            const NodeValue<dim> product =
+              RowKernels::times<dim>(A.rows(), i, x.data(), left);
+            for (unsigned int q = 0; q < dim; ++q)
+              for (unsigned int c = 0; c < dim; ++c)
+                x[dim * i + q] +=
+                  inverses[i][c * dim + q] * (b[dim * i + c] - product[c]);
+            RowKernels::add_share<dim>(A.rows(), i, x.data(), left);
+            plain_relaxation(A, inverses, i, b, plain);
           }
+        row_error = std::max(row_error, relative_difference(plain, x));
+
+        // Each loop over all rows leaves the sums as it has found them, also
+        // one of several groups.
+        for (const NodeRanges &some : {nodes, NodeRanges()})
+          for (const unsigned int n_sweeps : {0, 1, 2, 6})
+            for (const bool with_residual : {false, true})
+              {
+                GaussSeidel<dim>(A, inverses, some, 16)
+                  .run(n_sweeps,
+                       b.data(),
+                       x.data(),
+                       no_ghosts,
+                       with_residual ? r.data() : nullptr);
+                residual_at(x);
+                if (with_residual)
+                  row_error =
+                    std::max(row_error, relative_difference(expected, r));
+                for (unsigned int s = 0;
+                     stores_half<dim> && s < RowKernels::n_partial_sums * n;
+                     ++s)
+                  left_over = std::max(left_over, std::abs(sums[s]));
+              }
       }
     check_below(product_error, 1e-13, "products");
     check_below(energy_error, 1e-13, "energies of half the matrix");

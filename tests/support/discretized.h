@@ -112,14 +112,10 @@ namespace Tests
   sweep(const MonotoneSmoother<dim> &smoother,
         VectorType                  &u,
         ContactState                &state,
-        const bool                   updates_normal_forces,
-        const bool                   backwards)
+        const bool                   updates_normal_forces)
   {
     Iterate x(u, state, updates_normal_forces);
-    if (backwards)
-      smoother.backward(x, 1);
-    else
-      smoother.forward(x, 1);
+    smoother.relax(x, 1);
   }
 
 

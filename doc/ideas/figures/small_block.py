@@ -151,17 +151,17 @@ class SmallBlock:
         matrices = {0: free[:, None] * self.matrix * free}
         for k in range(levels):
             matrices[k + 1] = self.coarser(matrices[k], k)
-        for step, k in enumerate(order):
+        for k in order:
             b = bases[k].T @ (gradient - self.matrix @ v)
             if k == levels:
                 c = np.linalg.lstsq(matrices[k], b, rcond=1e-12)[0]
             else:
-                c = self.sweeps(matrices[k], b, sweeps, step >= levels)
+                c = self.sweeps(matrices[k], b, sweeps)
             v += bases[k] @ c
         return v
 
     @staticmethod
-    def sweeps(matrix, b, number, backwards):
+    def sweeps(matrix, b, number):
         """Block Gauss-Seidel; functions that truncation has taken stay zero."""
         c = np.zeros_like(b)
         n = len(b) // 2
@@ -169,7 +169,7 @@ class SmallBlock:
         inverses = np.linalg.pinv(
             matrix.reshape(n, 2, n, 2)[nodes, :, nodes, :], 1e-10, True)
         for _ in range(number):
-            for p in (reversed(nodes) if backwards else nodes):
+            for p in nodes:
                 row = slice(2 * p, 2 * p + 2)
                 c[row] += inverses[p] @ (b[row] - matrix[row] @ c)
         return c

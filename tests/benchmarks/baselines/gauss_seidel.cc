@@ -36,11 +36,11 @@ namespace Benchmark
     VectorType last_u, last_residual;
     while (timer.cpu_time() < seconds)
       {
-        smoother.forward(x, n_at_a_time - 1, first);
+        smoother.relax(x, n_at_a_time - 1, first);
         first         = false;
         last_u        = u;
         last_residual = x.residual;
-        smoother.forward(x, 1);
+        smoother.relax(x, 1);
         const VectorType &residual = x.residual;
         report.iterations += n_at_a_time;
 
