@@ -13,9 +13,9 @@ namespace Friction
    * and all processes; functions on groups of strongly coupled nodes serve
    * stiff parts, which move as a whole, and soft ones between them.
    *
-   * Each cycle by itself is symmetric, one after the other is not; and several
-   * processes solve each for its own nodes at once, which may go too far. What
-   * the sum may do to the energy the line search finds out.
+   * Each cycle by itself lowers the energy; but on groups several processes
+   * solve each for its own nodes at once, which may go too far. What the sum
+   * may do to the energy the line search finds out.
    */
   template <int dim>
   class AggregateCorrection : public Correction<dim>

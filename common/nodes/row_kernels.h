@@ -71,7 +71,7 @@ namespace Friction
    * complete what is to the left of the diagonal: with the new values of a
    * sweep, as Gauss-Seidel wants them. So each block is read once and used
    * twice. In descending order the old values would be wanted there, and a
-   * product before the first sweep; all sweeps are in ascending order.
+   * product before the first sweep; sweeps here are in ascending order.
    *
    * In three dimensions a sweep waits for memory, and this makes it twice as
    * fast. In two, blocks are as small as the sums that they are added to: what

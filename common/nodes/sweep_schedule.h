@@ -33,7 +33,7 @@ namespace Friction
 
   /**
    * Runs several relaxation sweeps through a matrix while reading it from
-   * memory only once.
+   * memory only once, or once for each few of them.
    *
    * A sweep does little arithmetic and takes not much longer than reading the
    * matrix, if that is larger than the cache. But the second sweep may relax a

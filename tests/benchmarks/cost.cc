@@ -5,8 +5,7 @@
 // same run.
 //
 // Also measured: the share of the updates of coarse matrices, solve time per
-// degree of freedom, and the memory bandwidth of a leading sweep compared with
-// a triad a = b + s c, which is as fast as memory allows.
+// degree of freedom, and memory.
 //
 // Usage: benchmark-cost 2|3 scene.prm [Section/Entry=value ...]
 
@@ -67,30 +66,6 @@ namespace benchmark_cost
     };
     return seconds(problem, solution_state) /
       seconds(without, ContactState(0, false));
-  }
-
-
-
-  template <int dim>
-  double
-  sweep_bandwidth(const DiscreteProblem<dim> &problem,
-                  const VectorType           &solution,
-                  const ContactState         &solution_state)
-  {
-    const MonotoneSmoother<dim> smoother(problem);
-    VectorType                  u     = solution;
-    ContactState                state = solution_state;
-    Iterate                     x(u, state, true);
-    const double seconds = best_of(10, [&]() { smoother.relax(x, 1); });
-    // What a sweep must read and write at least: blocks and column numbers, row
-    // starts and inverse diagonals, right hand side, and the vector twice.
-    const auto  &A = problem.stiffness.blocks();
-    const double bytes =
-      A.n_blocks() * (dim * dim * sizeof(double) + sizeof(unsigned int)) +
-      A.n_rows() *
-        (sizeof(std::size_t) + dim * dim * sizeof(double) +
-         3 * dim * sizeof(double));
-    return bytes / seconds;
   }
 
 
@@ -194,20 +169,11 @@ namespace benchmark_cost
     ContactSolver<dim>         solver(d, parameters.solver);
     const double               n_dofs = d.dof_handler().n_dofs();
     std::printf("bytes per dof: leaf matrix %.0f, smoother and levels %.0f, of "
-                "which hierarchy %.0f; peak of the process %.0f\n",
+                "which hierarchy %.0f; peak of the process %.0f\n\n",
                 d.stiffness().memory_consumption() / n_dofs,
                 nest.report().solver_memory / n_dofs,
                 solver.levels().hierarchy().memory_consumption() / n_dofs,
                 peak_memory() / n_dofs);
-
-    // After the peak of the memory has been read.
-    const double triad = triad_bandwidth();
-    std::printf(
-      "triad %.1f GB/s; a leading sweep on the last mesh runs at "
-      "%.0f%% of it\n\n",
-      triad * 1e-9,
-      100. * sweep_bandwidth(d.problem(), nest.displacement(), nest.state()) /
-        triad);
   }
 } // namespace benchmark_cost
 

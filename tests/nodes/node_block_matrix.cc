@@ -1,5 +1,5 @@
 // Matrices of node blocks do what dense matrices do: products, residuals,
-// look-ups, Gauss-Seidel sweeps in either direction. Several sweeps chased
+// look-ups, Gauss-Seidel sweeps. Several sweeps chased
 // through the matrix in chunks give the same as one after the other, to the
 // last bit. The pseudo-inverse of a singular block and the projector onto what
 // is lost satisfy the four conditions of Moore and Penrose.

@@ -1,6 +1,6 @@
-// The kernels do what a plain loop does, up to rounding: products, with blocks
-// added in either order, residuals, and Gauss-Seidel sweeps in either
-// direction, with each kind of instructions that the processor has; on meshes
+// The kernels do what a plain loop does, up to rounding: products, residuals,
+// and Gauss-Seidel sweeps, with each kind of instructions that the processor
+// has; on meshes
 // with hanging nodes, whose rows are empty and whose neighbours have rows of
 // all lengths, and for rows with no block, with one, two, and so on. They read
 // nothing outside of the matrix and the vectors, and write nothing but the rows
