@@ -89,7 +89,7 @@ namespace test_distributed
       , discretization(scene, *mesh)
     {
       scene.make_coarse_mesh(*mesh);
-      for (unsigned int round = 0; round < (dim == 2 ? 4 : 2); ++round)
+      for (unsigned int round = 0; round < (dim == 2 ? 4 : 3); ++round)
         {
           for (const auto &cell : mesh->active_cell_iterators())
             if (cell->is_locally_owned())
@@ -642,7 +642,7 @@ namespace test_distributed
               (state.in_contact(p) && state.sticks(p) != alone_state.sticks(q));
           }
         report(n_different, 0., name + "so are all phases");
-        // A process has but ten of the nodes here.
+        // A process has but ten of the nodes of the smallest mesh.
         report(std::max(0.,
                         static_cast<double>(found.cycles.size()) -
                           static_cast<double>(expected.cycles.size())),
