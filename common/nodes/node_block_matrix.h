@@ -310,7 +310,7 @@ namespace Friction
       return RowKernels::energy<dim>(rows(), x);
     }
 
-    /** r = b - A x. */
+    /** r = b - A x, or A x, as vmult() has it, if @p b is a null pointer. */
     void residual(double *r, const double *b, const double *x) const;
 
     /** Memory in bytes. */
