@@ -33,8 +33,12 @@ namespace test_large_coarse_mesh
 
 
 
+  // Both begin on this mesh and have to find the contact zone on it, which
+  // takes ten of their cycles.
   void
-  print(const NestedIteration<2> &iteration, const std::string &what)
+  print(const NestedIteration<2> &iteration,
+        const std::string        &what,
+        const unsigned int        most_cycles)
   {
     const SolverReport &report = iteration.report();
     std::cout << what << ": " << iteration.mesh().n_cells(0)
@@ -43,7 +47,7 @@ namespace test_large_coarse_mesh
               << iteration.state().n_sticking() << " sticking"
               << (report.converged ? "" : ", not converged") << std::endl;
     check_below(report.certificate.largest(), 1e-6, "certificate");
-    check_below(report.cycles.size(), 20, "cycles");
+    check_below(report.cycles.size(), most_cycles, "cycles");
   }
 } // namespace test_large_coarse_mesh
 
@@ -64,7 +68,7 @@ TEST(large_coarse_mesh)
   refined.begin();
   write_mesh(refined.mesh(), "large_coarse_mesh.msh");
   refined.solve();
-  print(refined, "refined");
+  print(refined, "refined", 20);
 
   Parameters of_import      = parameters({"Refinement/Initial refinements=0"});
   of_import.scene.geometry  = GeometryKind::mesh_file;
@@ -72,7 +76,7 @@ TEST(large_coarse_mesh)
   NestedIteration<2> imported(of_import);
   imported.begin();
   imported.solve();
-  print(imported, "imported");
+  print(imported, "imported", 23);
 
   check_below(std::abs(imported.report().energy / refined.report().energy - 1.),
               1e-9,
