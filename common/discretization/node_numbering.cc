@@ -228,6 +228,43 @@ namespace Friction
           numbers[dim * order[i] + d] = first + dim * i + d;
       return numbers;
     }
+
+
+
+    // On a mesh without local refinement the finest level is the leaf mesh, and
+    // can have the same numbers: the new numbers of its locally owned degrees
+    // of freedom, once those of the leaf mesh are the new ones. None if this is
+    // no such mesh, or what this process owns is not the same on both.
+    template <int dim>
+    std::vector<types::global_dof_index>
+    numbers_of_leaf(const DoFHandler<dim> &dof_handler,
+                    const unsigned int     finest_level)
+    {
+      const IndexSet &owned = dof_handler.locally_owned_mg_dofs(finest_level);
+      if (owned.size() != dof_handler.n_dofs() ||
+          !(owned == dof_handler.locally_owned_dofs()))
+        return {};
+      std::vector<types::global_dof_index> numbers(owned.n_elements(),
+                                                   numbers::invalid_dof_index);
+      for (const auto &cell :
+           dof_handler.mg_cell_iterators_on_level(finest_level))
+        if (cell->level_subdomain_id() != numbers::artificial_subdomain_id &&
+            !cell->is_artificial())
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              const auto dof = cell->mg_vertex_dof_index(finest_level, v, 0);
+              if (owned.is_element(dof))
+                for (unsigned int d = 0; d < dim; ++d)
+                  numbers[owned.index_within_set(dof) + d] =
+                    cell->vertex_dof_index(v, d);
+            }
+      const bool same =
+        std::all_of(numbers.begin(), numbers.end(), [&](const auto number) {
+          return number != numbers::invalid_dof_index &&
+            owned.is_element(number);
+        });
+      return same ? numbers : std::vector<types::global_dof_index>();
+    }
   } // namespace
 
 
@@ -252,10 +289,17 @@ namespace Friction
     // relaxed there; see LevelHierarchy.
     const auto around = levels_around_vertices(dof_handler.get_triangulation());
     std::vector<types::global_dof_index> not_relaxed;
-    for (unsigned int level = 0;
-         level < dof_handler.get_triangulation().n_global_levels();
-         ++level)
+    const unsigned int                   n_levels =
+      dof_handler.get_triangulation().n_global_levels();
+    const std::vector<types::global_dof_index> of_leaf =
+      numbers_of_leaf(dof_handler, n_levels - 1);
+    for (unsigned int level = 0; level < n_levels; ++level)
       {
+        if (level == n_levels - 1 && !of_leaf.empty())
+          {
+            dof_handler.renumber_dofs(level, of_leaf);
+            continue;
+          }
         vertex_dofs.clear();
         not_relaxed.clear();
         for (const auto &cell : dof_handler.mg_cell_iterators_on_level(level))

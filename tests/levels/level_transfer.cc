@@ -3,7 +3,8 @@
 // gives the same values at all nodes, on any number of processes, and its
 // restriction is the transpose of that. So it is between the finest level and
 // the leaf mesh, and between any other level and the leaf nodes that are its
-// own. The meshes have hanging nodes, on curved boundaries as well.
+// own. The meshes have hanging nodes, on curved boundaries as well. On others
+// the finest level and the leaf mesh are the same.
 
 #include <common/levels/level_hierarchy.h>
 #include <common/levels/level_transfer.h>
@@ -157,6 +158,35 @@ namespace test_level_transfer
     check_everywhere(own_transposed < 1e-14,
                      "corrections of own nodes come back the way of residuals");
   }
+
+
+
+  // Without local refinement nothing is copied between leaf mesh and finest
+  // level, whose nodes have the same numbers, those in contact included.
+  template <int dim>
+  void
+  test_uniform(const std::string &scene_name)
+  {
+    const Scene<dim> scene(read_parameters(
+      (dim == 2 ? SCENES_DIR "/" : SCENES_3D_DIR "/") + scene_name, {}));
+    const auto       mesh = make_triangulation<dim>();
+    scene.make_coarse_mesh(*mesh);
+    mesh->refine_global(4 - dim / 2);
+    const Discretized<dim>    d(scene, *mesh);
+    const LevelHierarchy<dim> hierarchy(
+      d.dof_handler(), d.constraints(), d.stiffness().blocks());
+    const auto  &finest      = hierarchy.level(hierarchy.n_levels() - 1);
+    unsigned int n_different = 0;
+    for (const auto &own : finest.own_nodes())
+      n_different += own.node != own.leaf.number();
+    check_everywhere(Utilities::MPI::sum(d.contact().size(), MPI_COMM_WORLD) >
+                       0,
+                     "contact on the uniform mesh of " + scene_name);
+    check_everywhere(n_different == 0 &&
+                       finest.own_nodes().size() == finest.n_nodes() &&
+                       finest.n_nodes() == d.constraints().n_owned_nodes(),
+                     "its finest level is the leaf mesh, node by node");
+  }
 } // namespace test_level_transfer
 
 
@@ -165,4 +195,6 @@ TEST(level_transfer)
 {
   test<2>("hertz.prm");
   test<3>("half-ball.prm");
+  test_uniform<2>("hertz.prm");
+  test_uniform<3>("block.prm");
 }
