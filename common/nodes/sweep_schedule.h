@@ -170,14 +170,15 @@ namespace Friction
     const unsigned int n_stages = n_sweeps + (with_residual ? 1 : 0),
                        n_groups = (n_stages + max_stages_at_once - 1) /
       max_stages_at_once;
-    for (unsigned int g = 0; g < n_groups; ++g)
+    unsigned int first = 0;
+    for (unsigned int g = 1; g <= n_groups; ++g)
       {
-        const unsigned int first = (n_stages * g + n_groups - 1) / n_groups,
-                           end = (n_stages * (g + 1) + n_groups - 1) / n_groups;
+        const unsigned int end = (n_stages * g + n_groups - 1) / n_groups;
         run_at_once({first, std::min(end, n_sweeps) - first, end > n_sweeps},
                     work,
                     ghosts,
                     x);
+        first = end;
       }
   }
 
