@@ -45,8 +45,7 @@ namespace Friction
     , begin_with(solver.next_method)
     , initial(search.u)
     , initial_state(search.state)
-    , best(search.u)
-    , best_state(search.state)
+    , best_state(0, false)
   {}
 
 
@@ -101,8 +100,9 @@ namespace Friction
   void
   SafeguardedSolver<dim>::Attempts::start_from_best()
   {
-    search.u     = best;
-    search.state = best_state;
+    const bool there_is = best.size() > 0;
+    search.u            = there_is ? best : initial;
+    search.state        = there_is ? best_state : initial_state;
   }
 
 

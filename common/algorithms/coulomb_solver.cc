@@ -61,16 +61,19 @@ namespace Friction
     const bool                  coulomb = problem.has_coulomb_friction();
     const PhaseCosts            before  = phase_costs(problem.communicator());
 
-    Iterate x(u, state);
-    if (coulomb && settings.algorithm == Algorithm::fixed_point)
-      iterate_normal_forces(report, x, progress);
-    else
-      {
-        x.updates_normal_forces = coulomb;
-        const MultigridResult result =
-          run_multigrid(iteration, x, settings.limits, progress);
-        report.set_result(result);
-      }
+    // What the iteration keeps goes before the report takes its vector.
+    {
+      Iterate x(u, state);
+      if (coulomb && settings.algorithm == Algorithm::fixed_point)
+        iterate_normal_forces(report, x, progress);
+      else
+        {
+          x.updates_normal_forces = coulomb;
+          const MultigridResult result =
+            run_multigrid(iteration, x, settings.limits, progress);
+          report.set_result(result);
+        }
+    }
 
     certify(report, iteration.functional(), u, state);
     if (!(report.certificate.largest() <= settings.certificate_tolerance))

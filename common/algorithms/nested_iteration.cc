@@ -228,8 +228,12 @@ namespace Friction
   NestedIteration<dim>::refine()
   {
     ++the_level;
-    guessed_displacement = u;
-    guessed_tractions    = contact_stresses;
+    // What belongs to the mesh before is of no use any more.
+    guessed_displacement.swap(u);
+    guessed_tractions.swap(contact_stresses);
+    for (VectorType *of_last_mesh :
+         {&u, &contact_stresses, &last_report.residual})
+      of_last_mesh->reinit(0);
     guessed_displacement.update_ghost_values();
     guessed_tractions.update_ghost_values();
     refine_mesh(*triangulation,

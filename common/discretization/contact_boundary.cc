@@ -198,6 +198,7 @@ namespace Friction
             add_node(node, constraints, scene);
           }
     });
+    nodes.shrink_to_fit();
     find_friction(constraints, scene);
   }
 

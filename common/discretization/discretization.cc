@@ -88,6 +88,9 @@ namespace Friction
     hanging                  = Compatibility::make_constraints(owned, relevant);
     DoFTools::make_hanging_node_constraints(dofs, hanging);
     hanging.close();
+    // A copy is as large as it has to be: a list that has grown line by line
+    // has room for up to twice as many.
+    hanging = AffineConstraints<double>(hanging);
 
     const RunScope                  part(Compatibility::mpi_communicator(mesh),
                         RunPart::contact);

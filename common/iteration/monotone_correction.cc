@@ -28,6 +28,7 @@ namespace Friction
   MonotoneCorrection<dim>::set_up()
   {
     Base::set_up();
+    coarsest_step = levels.vector(0);
     for (unsigned int k = 0; k < levels.n_correction_levels(); ++k)
       {
         const auto &level = levels.hierarchy().level(k);
@@ -210,9 +211,10 @@ namespace Friction
 
 
 
-  // Adds the step in work[0], with defect[0] the residual that it was found
-  // for. A step that leaves the bounds is projected back, or if the energy does
-  // not like this, shortened. Returns whether the bounds allow the whole step.
+  // Adds the step in coarsest_step, with defect[0] the residual that it was
+  // found for. A step that leaves the bounds is projected back, or if the
+  // energy does not like this, shortened. Returns whether the bounds allow the
+  // whole step.
   template <int dim>
   bool
   MonotoneCorrection<dim>::step_within_bounds()
@@ -220,7 +222,7 @@ namespace Friction
     const MPI_Comm     comm     = levels.communicator();
     const unsigned int n_values = dim * levels.hierarchy().level(0).n_nodes();
     double            *c        = correction[0].begin();
-    const double      *step = work[0].begin(), *r = defect[0].begin(),
+    const double      *step = coarsest_step.begin(), *r = defect[0].begin(),
                  *lo = lower[0].begin(), *up = upper[0].begin();
     const auto clamp = [&](const unsigned int i, const double length) {
       return std::min(std::max(c[i] + length * step[i], lo[i]), up[i]);
@@ -276,7 +278,7 @@ namespace Friction
     const unsigned int n_nodes    = levels.hierarchy().level(0).n_nodes();
     const unsigned int n_values   = dim * n_nodes;
     const NodeBlockMatrix<dim> &B = levels.matrices().matrix(0);
-    double       *c = correction[0].begin(), *step = work[0].begin();
+    double       *c = correction[0].begin(), *step = coarsest_step.begin();
     double       *r  = defect[0].begin();
     const double *lo = lower[0].begin(), *up = upper[0].begin();
 

@@ -54,9 +54,8 @@ namespace Friction
     using Base::levels;
     using Base::rhs;
     using Base::smoothing_steps;
-    using Base::work;
 
-    VectorType leaf_lower, leaf_upper;
+    VectorType leaf_lower, leaf_upper, coarsest_step;
 
     // Per level: bounds of the correction, and four numbers per component that
     // become bounds.

@@ -24,6 +24,7 @@ namespace Friction
     for (unsigned int node = 0; node < is_ordinary.size(); ++node)
       is_ordinary[node] = !constraints.is_fixed(node);
 
+    local_problems.reserve(contact.size());
     for (const ContactNode<dim> &p : contact)
       {
         is_ordinary[p.node] = false;

@@ -1,6 +1,8 @@
 #include <common/iteration/truncated_correction.h>
 #include <common/parallel/owned_values.h>
 
+#include <algorithm>
+
 namespace Friction
 {
   namespace
@@ -54,10 +56,26 @@ namespace Friction
       {
         rhs.push_back(levels.vector(k));
         correction.push_back(levels.vector(k));
-        work.push_back(levels.vector(k));
         defect.push_back(levels.vector(k));
-        start.push_back(levels.vector(k == 0 ? 0 : k - 1));
+
+        // Nothing has been there before the only visit of a V-cycle.
+        const bool again = is_visited_again(k);
+        start.push_back(again ? levels.vector(k - 1) : VectorType());
+        work.push_back(again ? levels.vector(k) : VectorType());
       }
+  }
+
+
+
+  // Within one cycle. Of the coarsest level only its solution counts.
+  template <int dim>
+  bool
+  TruncatedCorrection<dim>::is_visited_again(const unsigned int k) const
+  {
+    return k > 0 &&
+      std::any_of(n_visits.begin() + k, n_visits.end(), [](const auto n) {
+             return n > 1;
+           });
   }
 
 
@@ -134,13 +152,13 @@ namespace Friction
     const LevelTransfer<dim> &transfer = levels.transfer();
     VectorType               &c        = correction[k];
     VectorType               &coarse   = correction[k - 1];
-    VectorType               &before   = start[k];
-    before                             = coarse;
-    if (is_untouched[k - 1])
+    const bool                is_first = is_untouched[k - 1];
+    if (is_first)
       relax(k, &defect[k]);
     else
       {
         // Defect of everything but the part inherited from below.
+        start[k] = coarse;
         relax(k, nullptr);
         VectorType &own = work[k];
         own             = 0.;
@@ -158,9 +176,15 @@ namespace Friction
     for (unsigned int i = 0; i < n_visits[k - 1]; ++i)
       visit(k - 1);
 
-    scale_owned(before, -1.);
-    add_owned(before, 1., coarse);
-    transfer.prolongate_and_add(k, c, before);
+    if (is_first)
+      transfer.prolongate_and_add(k, c, coarse);
+    else
+      {
+        VectorType &change = start[k];
+        scale_owned(change, -1.);
+        add_owned(change, 1., coarse);
+        transfer.prolongate_and_add(k, c, change);
+      }
     levels.coupled_ghosts(k).update(c.begin(), dim);
     relax(k, nullptr);
   }

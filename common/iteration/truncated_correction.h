@@ -65,10 +65,9 @@ namespace Friction
 
     Levels<dim> &levels;
 
-    // Per level: right hand side, correction, what the next coarser level had
-    // when the visit began, and vectors of work. The corrections of a W-cycle
-    // accumulate over its visits to a level.
-    std::vector<VectorType> rhs, correction, start, defect, work;
+    // Per level: right hand side, correction, and what a visit leaves over. If
+    // a cycle comes to a level again, corrections accumulate over its visits.
+    std::vector<VectorType> rhs, correction, defect;
 
     // What a cycle with bounds does in another way: to set up, to get ready for
     // the visits to a level that has got its right hand side, to relax it, and
@@ -93,9 +92,15 @@ namespace Friction
     std::vector<unsigned int> n_visits;
     std::vector<char>         is_untouched;
 
+    // Of a level that is visited again: what the next coarser one had when the
+    // visit began, and a vector of work.
+    std::vector<VectorType> start, work;
+
     const bool  relaxes_together;
     const Cycle cycle;
     bool        relaxes_leaf = false;
+
+    bool is_visited_again(const unsigned int level) const;
 
     void visit(const unsigned int level);
 

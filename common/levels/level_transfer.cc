@@ -36,6 +36,7 @@ namespace Friction
     // prescribed, and nodes at the boundary of a refined region matter only to
     // copy_to_mg() and its like, which are not called here.
     transfer.build(dof_handler, layouts);
+    transfer.release_copies();
 
     for (unsigned int k = 0; k < hierarchy.n_levels(); ++k)
       {
@@ -47,6 +48,21 @@ namespace Friction
         std::sort(ghosts.begin(), ghosts.end());
         ghosts_at_leaf_nodes.emplace_back(level.numbering(), ghosts);
       }
+  }
+
+
+
+  template <int dim>
+  void
+  LevelTransfer<dim>::BetweenLevels::release_copies()
+  {
+    this->copy_indices.clear();
+    this->solution_copy_indices.clear();
+    this->ghosted_global_vector.reinit(0);
+    this->solution_ghosted_global_vector.reinit(0);
+#if !DEAL_II_VERSION_GTE(9, 6, 0)
+    this->solution_ghosted_level_vector.resize(0, 0);
+#endif
   }
 
 

@@ -79,8 +79,17 @@ namespace Friction
     }
 
   private:
-    const LevelHierarchy<dim>        &hierarchy;
-    MGTransferMatrixFree<dim, double> transfer;
+    // deal.II's transfer prepares copies between the mesh and all levels, which
+    // are not asked of it: two times over, a vector of the mesh and the place
+    // of each of its numbers on the levels.
+    class BetweenLevels : public MGTransferMatrixFree<dim, double>
+    {
+    public:
+      void release_copies();
+    };
+
+    const LevelHierarchy<dim> &hierarchy;
+    BetweenLevels              transfer;
 
     // On a mesh without local refinement the finest level is the leaf mesh,
     // node by node, and no vector of its own is needed in between.
