@@ -19,6 +19,8 @@
 
 #include <deal.II/lac/affine_constraints.h>
 
+#include <deal.II/multigrid/mg_transfer_matrix_free.h>
+
 namespace Friction
 {
   namespace Compatibility
@@ -94,6 +96,32 @@ namespace Friction
     using SolutionTransfer =
       dealii::parallel::distributed::SolutionTransfer<dim, VectorType>;
 #endif
+
+    /**
+     * deal.II's transfer between levels, without what it prepares for copies
+     * between the mesh and all levels, copy_to_mg() and copy_from_mg(): twice a
+     * vector of the mesh and where each of its numbers is on the levels, and
+     * before deal.II 9.6 vectors of all levels. What prolongates and restricts
+     * does not need them.
+     */
+    template <int dim>
+    class TransferWithoutCopies
+      : public dealii::MGTransferMatrixFree<dim, double>
+    {
+    public:
+      /** To be called after build(). There can be no copies after that. */
+      void
+      release_copies()
+      {
+        this->copy_indices.clear();
+        this->solution_copy_indices.clear();
+        this->ghosted_global_vector.reinit(0);
+        this->solution_ghosted_global_vector.reinit(0);
+#if !DEAL_II_VERSION_GTE(9, 6, 0)
+        this->solution_ghosted_level_vector.resize(0, 0);
+#endif
+      }
+    };
 
     /**
      * An empty set of constraints for the locally relevant degrees of freedom.

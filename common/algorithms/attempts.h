@@ -33,7 +33,8 @@ namespace Friction
     std::vector<SolverAttempt> attempts;
     std::vector<CycleInfo>     cycles;
 
-    // If nothing succeeds, what violates the law least is returned.
+    // If nothing succeeds, what violates the law least is returned. Empty until
+    // an attempt has failed with something finite.
     double       smallest_violation = std::numeric_limits<double>::infinity();
     VectorType   best;
     ContactState best_state;

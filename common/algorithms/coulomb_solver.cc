@@ -61,7 +61,7 @@ namespace Friction
     const bool                  coulomb = problem.has_coulomb_friction();
     const PhaseCosts            before  = phase_costs(problem.communicator());
 
-    // What the iteration keeps goes before the report takes its vector.
+    // The iterate's residual and step go before the report takes a vector.
     {
       Iterate x(u, state);
       if (coulomb && settings.algorithm == Algorithm::fixed_point)

@@ -227,6 +227,8 @@ namespace Friction
   void
   NestedIteration<dim>::refine()
   {
+    Assert(u.size() == the_discretization.dof_handler().n_dofs(),
+           ExcMessage("There is no solution on this mesh."));
     ++the_level;
     // What belongs to the mesh before is of no use any more.
     guessed_displacement.swap(u);

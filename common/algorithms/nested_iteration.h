@@ -131,7 +131,9 @@ namespace Friction
     void mark_all();
 
     /** Refines what is flagged, discretises anew, and interpolates the solution
-     * to be the next guess. */
+     * to be the next guess. Until the next one is accepted there is no
+     * displacement(), there are no tractions(), and report() has no residual:
+     * those of the mesh before are gone. */
     void refine();
 
     /** All of that: goes on to the next mesh, unless this is the last one or

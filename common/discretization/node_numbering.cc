@@ -231,10 +231,10 @@ namespace Friction
 
 
 
-    // On a mesh without local refinement the finest level is the leaf mesh, and
-    // can have the same numbers: the new numbers of its locally owned degrees
-    // of freedom, once those of the leaf mesh are the new ones. None if this is
-    // no such mesh, or what this process owns is not the same on both.
+    // The new numbers of the finest level, after the leaf mesh has been
+    // renumbered, if both are the same mesh: those of the leaf mesh. None if
+    // the leaf mesh has other nodes, or if this process does not own the same
+    // ones of both.
     template <int dim>
     std::vector<types::global_dof_index>
     numbers_of_leaf(const DoFHandler<dim> &dof_handler,
@@ -244,8 +244,8 @@ namespace Friction
       if (owned.size() != dof_handler.n_dofs() ||
           !(owned == dof_handler.locally_owned_dofs()))
         return {};
-      std::vector<types::global_dof_index> numbers(owned.n_elements(),
-                                                   numbers::invalid_dof_index);
+      std::vector<types::global_dof_index> result(owned.n_elements(),
+                                                  numbers::invalid_dof_index);
       for (const auto &cell :
            dof_handler.mg_cell_iterators_on_level(finest_level))
         if (cell->level_subdomain_id() != numbers::artificial_subdomain_id &&
@@ -255,15 +255,15 @@ namespace Friction
               const auto dof = cell->mg_vertex_dof_index(finest_level, v, 0);
               if (owned.is_element(dof))
                 for (unsigned int d = 0; d < dim; ++d)
-                  numbers[owned.index_within_set(dof) + d] =
+                  result[owned.index_within_set(dof) + d] =
                     cell->vertex_dof_index(v, d);
             }
-      const bool same =
-        std::all_of(numbers.begin(), numbers.end(), [&](const auto number) {
-          return number != numbers::invalid_dof_index &&
-            owned.is_element(number);
-        });
-      return same ? numbers : std::vector<types::global_dof_index>();
+      if (std::any_of(result.begin(), result.end(), [&](const auto number) {
+            return number == numbers::invalid_dof_index ||
+              !owned.is_element(number);
+          }))
+        result.clear();
+      return result;
     }
   } // namespace
 
@@ -291,14 +291,16 @@ namespace Friction
     std::vector<types::global_dof_index> not_relaxed;
     const unsigned int                   n_levels =
       dof_handler.get_triangulation().n_global_levels();
-    const std::vector<types::global_dof_index> of_leaf =
-      numbers_of_leaf(dof_handler, n_levels - 1);
     for (unsigned int level = 0; level < n_levels; ++level)
       {
-        if (level == n_levels - 1 && !of_leaf.empty())
+        if (level == n_levels - 1)
           {
-            dof_handler.renumber_dofs(level, of_leaf);
-            continue;
+            const auto of_leaf = numbers_of_leaf(dof_handler, level);
+            if (!of_leaf.empty())
+              {
+                dof_handler.renumber_dofs(level, of_leaf);
+                break;
+              }
           }
         vertex_dofs.clear();
         not_relaxed.clear();

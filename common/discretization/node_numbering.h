@@ -18,7 +18,8 @@ namespace Friction
    *
    * Of each chunk of nodes that a sweep takes at once, those on the contact
    * boundary of the leaf mesh come last, and on a level those that are not
-   * relaxed, so that there are long ranges of others before them.
+   * relaxed, so that there are long ranges of others before them. Without local
+   * refinement the finest level is the leaf mesh, and has its numbers.
    *
    * To be called after distribute_dofs() and distribute_mg_dofs(). Each process
    * renumbers the nodes it owns. Where it has neighbours, the search starts

@@ -321,7 +321,8 @@ namespace Friction
   MonotoneCorrection<dim>::memory_consumption() const
   {
     std::size_t bytes = Base::memory_consumption() +
-      leaf_lower.memory_consumption() + leaf_upper.memory_consumption();
+      leaf_lower.memory_consumption() + leaf_upper.memory_consumption() +
+      coarsest_step.memory_consumption();
     for (const auto &vectors : {&lower, &upper})
       for (const VectorType &vector : *vectors)
         bytes += vector.memory_consumption();

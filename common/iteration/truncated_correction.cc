@@ -58,7 +58,8 @@ namespace Friction
         correction.push_back(levels.vector(k));
         defect.push_back(levels.vector(k));
 
-        // Nothing has been there before the only visit of a V-cycle.
+        // At a first visit the next coarser level is zero yet, and there is
+        // nothing to remember.
         const bool again = is_visited_again(k);
         start.push_back(again ? levels.vector(k - 1) : VectorType());
         work.push_back(again ? levels.vector(k) : VectorType());
@@ -67,7 +68,7 @@ namespace Friction
 
 
 
-  // Within one cycle. Of the coarsest level only its solution counts.
+  // Within one cycle. (Level 0 is only solved, and remembers nothing.)
   template <int dim>
   bool
   TruncatedCorrection<dim>::is_visited_again(const unsigned int k) const

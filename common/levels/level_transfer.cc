@@ -54,21 +54,6 @@ namespace Friction
 
   template <int dim>
   void
-  LevelTransfer<dim>::BetweenLevels::release_copies()
-  {
-    this->copy_indices.clear();
-    this->solution_copy_indices.clear();
-    this->ghosted_global_vector.reinit(0);
-    this->solution_ghosted_global_vector.reinit(0);
-#if !DEAL_II_VERSION_GTE(9, 6, 0)
-    this->solution_ghosted_level_vector.resize(0, 0);
-#endif
-  }
-
-
-
-  template <int dim>
-  void
   LevelTransfer<dim>::restrict_and_add(const unsigned int k,
                                        VectorType        &coarse,
                                        const VectorType  &fine) const

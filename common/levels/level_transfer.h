@@ -1,10 +1,9 @@
 #ifndef friction_levels_level_transfer_h
 #define friction_levels_level_transfer_h
 
+#include <common/compatibility.h>
 #include <common/levels/level_hierarchy.h>
 #include <common/parallel/ghost_exchange.h>
-
-#include <deal.II/multigrid/mg_transfer_matrix_free.h>
 
 #include <vector>
 
@@ -79,17 +78,8 @@ namespace Friction
     }
 
   private:
-    // deal.II's transfer prepares copies between the mesh and all levels, which
-    // are not asked of it: two times over, a vector of the mesh and the place
-    // of each of its numbers on the levels.
-    class BetweenLevels : public MGTransferMatrixFree<dim, double>
-    {
-    public:
-      void release_copies();
-    };
-
-    const LevelHierarchy<dim> &hierarchy;
-    BetweenLevels              transfer;
+    const LevelHierarchy<dim>                &hierarchy;
+    Compatibility::TransferWithoutCopies<dim> transfer;
 
     // On a mesh without local refinement the finest level is the leaf mesh,
     // node by node, and no vector of its own is needed in between.

@@ -34,7 +34,8 @@ namespace test_large_coarse_mesh
 
 
   // Both begin on this mesh and have to find the contact zone on it, which
-  // takes ten of their cycles.
+  // takes ten of their cycles. There are 17 of them with levels, and 21
+  // without.
   void
   print(const NestedIteration<2> &iteration,
         const std::string        &what,

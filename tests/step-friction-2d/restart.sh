@@ -7,8 +7,8 @@
 # LOADED: what runs in the place of the program where it is left alone. BOUND: by how
 # much the number of cycles on a level may differ. N: number of processes; without MPIEXEC,
 # or for N = 1, the program is called directly. In the environment OVERRIDE may have an
-# entry that is to be different in the scene, and TOLERANCE to how many digits histories
-# and the sizes of meshes are to agree then.
+# entry that is to be different in the scene, and TOLERANCE the relative difference that
+# histories, and numbers of cells and of degrees of freedom, may have then.
 program=$1
 loaded=$2
 scene=$3
@@ -171,8 +171,8 @@ run "$n" "$work/killed" "Refinement/Levels=$last" --restart
 problem=
 [ $status -eq 0 ] || problem=" status $status"
 table stdout >killed.txt
-# Cells and degrees of freedom are equal unless TOLERANCE says otherwise: an indicator at
-# the threshold decides for itself.
+# Runs that stop early have indicators that differ a little, and may refine some cells
+# more or less in the body. Contact nodes, and which of them stick, are the same.
 table whole.txt | paste - killed.txt | awk -v bound="$bound" -v sizes="${TOLERANCE:-0}" '
   {
     if (NF != 18) { print "rows"; next }
