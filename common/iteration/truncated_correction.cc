@@ -1,8 +1,6 @@
 #include <common/iteration/truncated_correction.h>
 #include <common/parallel/owned_values.h>
 
-#include <algorithm>
-
 namespace Friction
 {
   namespace
@@ -57,26 +55,9 @@ namespace Friction
         rhs.push_back(levels.vector(k));
         correction.push_back(levels.vector(k));
         defect.push_back(levels.vector(k));
-
-        // At a first visit the next coarser level is zero yet, and there is
-        // nothing to remember.
-        const bool again = is_visited_again(k);
-        start.push_back(again ? levels.vector(k - 1) : VectorType());
-        work.push_back(again ? levels.vector(k) : VectorType());
       }
-  }
-
-
-
-  // Within one cycle. (Level 0 is only solved, and remembers nothing.)
-  template <int dim>
-  bool
-  TruncatedCorrection<dim>::is_visited_again(const unsigned int k) const
-  {
-    return k > 0 &&
-      std::any_of(n_visits.begin() + k, n_visits.end(), [](const auto n) {
-             return n > 1;
-           });
+    start.resize(n);
+    work.resize(n);
   }
 
 
@@ -162,7 +143,7 @@ namespace Friction
         start[k] = coarse;
         relax(k, nullptr);
         VectorType &own = work[k];
-        own             = 0.;
+        own.reinit(c);
         transfer.prolongate_and_add(k, own, coarse);
         scale_owned(own, -1.);
         add_owned(own, 1., c);

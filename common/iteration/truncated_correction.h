@@ -92,15 +92,14 @@ namespace Friction
     std::vector<unsigned int> n_visits;
     std::vector<char>         is_untouched;
 
-    // Of a level that is visited again: what the next coarser one had when the
-    // visit began, and a vector of work.
+    // What the next coarser level had when a visit began, and a vector of work;
+    // empty until a level is visited again within a cycle, which a V-cycle does
+    // not do: at a first visit the next coarser level is zero yet.
     std::vector<VectorType> start, work;
 
     const bool  relaxes_together;
     const Cycle cycle;
     bool        relaxes_leaf = false;
-
-    bool is_visited_again(const unsigned int level) const;
 
     void visit(const unsigned int level);
 
