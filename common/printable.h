@@ -2,6 +2,7 @@
 #define friction_printable_h
 
 #include <cstddef>
+#include <iostream>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -163,6 +164,18 @@ namespace Friction
         room -= width(*c);
       }
     return beginning + "..." + end;
+  }
+
+
+
+  /**
+   * Print a line to standard error, at once: error streams have no buffer, and
+   * what mpirun says of a process that fails may come between two pieces.
+   */
+  inline void
+  print_error(const std::string &line)
+  {
+    std::cerr << line + '\n' << std::flush;
   }
 } // namespace Friction
 

@@ -1,8 +1,6 @@
 #include <common/parallel/collective_error.h>
 #include <common/printable.h>
 
-#include <iostream>
-
 namespace Friction
 {
   void
@@ -27,7 +25,7 @@ namespace Friction
   {
     if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1)
       {
-        std::cerr << "Error: " << printable(sentence) << std::endl;
+        print_error("Error: " + printable(sentence));
         MPI_Abort(communicator, 2);
       }
     throw InputError(sentence);

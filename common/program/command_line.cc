@@ -135,8 +135,8 @@ namespace Friction
     // An unexpected exception may be that of a single process. We do not know
     // what the others are waiting for; only MPI can end them.
     const auto unexpected = [&](const std::string &what) {
-      std::cerr << program.name
-                << ": unexpected error: " << printable_lines(what) << std::endl;
+      print_error(program.name +
+                  ": unexpected error: " + printable_lines(what));
       if (Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
         MPI_Abort(MPI_COMM_WORLD, 3);
       return 3;
@@ -146,9 +146,8 @@ namespace Friction
     const auto finish = [&](const int status) {
       if (!speaks || std::cout.flush())
         return status;
-      std::cerr << program.name
-                << ": standard output cannot be written; is its disk full?"
-                << std::endl;
+      print_error(program.name +
+                  ": standard output cannot be written; is its disk full?");
       return 2;
     };
 
@@ -228,8 +227,7 @@ namespace Friction
     catch (const InputError &error)
       {
         if (speaks)
-          std::cerr << program.name << ": " << printable(error.what())
-                    << std::endl;
+          print_error(program.name + ": " + printable(error.what()));
         return 2;
       }
     catch (const std::bad_alloc &)
