@@ -19,11 +19,8 @@ namespace Friction
 
 
 
-  ExtrudedManifold::ExtrudedManifold(
-    std::shared_ptr<const Triangulation<2>> section,
-    const types::manifold_id                id)
+  ExtrudedManifold::ExtrudedManifold(std::shared_ptr<const Manifold<2>> section)
     : section(std::move(section))
-    , id(id)
   {}
 
 
@@ -31,7 +28,7 @@ namespace Friction
   std::unique_ptr<Manifold<3>>
   ExtrudedManifold::clone() const
   {
-    return std::make_unique<ExtrudedManifold>(section, id);
+    return std::make_unique<ExtrudedManifold>(section);
   }
 
 
@@ -80,8 +77,8 @@ namespace Friction
 
     const Point<2> p = n == 1
       ? plane_points[0]
-      : section->get_manifold(id).get_new_point(make_array_view(plane_points),
-                                                make_array_view(plane_weights));
+      : section->get_new_point(make_array_view(plane_points),
+                               make_array_view(plane_weights));
     return {p[0], p[1], z};
   }
 } // namespace Friction

@@ -2,7 +2,6 @@
 #define friction_scene_extruded_manifold_h
 
 #include <deal.II/grid/manifold.h>
-#include <deal.II/grid/tria.h>
 
 #include <memory>
 
@@ -14,20 +13,16 @@ namespace Friction
    * A manifold of a plane mesh, the section, drawn along the z axis: for bodies
    * whose cells are those of the section between planes of constant z, and
    * whose other manifolds are drawn along the axis like this one. If the
-   * manifold interpolates inside of coarse cells (deal.II's
-   * TransfiniteInterpolationManifold), new points are those that deal.II would
-   * find in the cells of the body. They are found in the section, in a fraction
-   * of the time: of the vertices that refinement makes, the middles of a cell
-   * and of its faces along the axis lie above points of the section that are
-   * there already.
+   * manifold interpolates inside of coarse cells, new points are those that
+   * deal.II's TransfiniteInterpolationManifold would find in the cells of the
+   * body. They are found in the section, in a fraction of the time: of the
+   * vertices that refinement makes, the middles of a cell and of its faces
+   * along the axis lie above points of the section that are there already.
    */
   class ExtrudedManifold : public Manifold<3>
   {
   public:
-    /** The manifold @p id of @p section, which must not be changed afterwards.
-     */
-    ExtrudedManifold(std::shared_ptr<const Triangulation<2>> section,
-                     const types::manifold_id                id);
+    explicit ExtrudedManifold(std::shared_ptr<const Manifold<2>> section);
 
     std::unique_ptr<Manifold<3>> clone() const override;
 
@@ -36,8 +31,7 @@ namespace Friction
                   const ArrayView<const double>   &weights) const override;
 
   private:
-    std::shared_ptr<const Triangulation<2>> section;
-    types::manifold_id                      id;
+    std::shared_ptr<const Manifold<2>> section;
   };
 } // namespace Friction
 

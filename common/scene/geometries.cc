@@ -1,6 +1,7 @@
 #include <common/printable.h>
 #include <common/scene/extruded_manifold.h>
 #include <common/scene/geometries.h>
+#include <common/scene/ring_manifold.h>
 
 #include <deal.II/base/numbers.h>
 #include <deal.II/base/utilities.h>
@@ -548,38 +549,36 @@ namespace Friction
 
 
 
-    template <int dim>
     void
-    interpolate_ring(Triangulation<dim> &triangulation)
+    set_ring_manifold(const Parameters::Scene &, Triangulation<2> &disc)
     {
-      TransfiniteInterpolationManifold<dim> ring;
-      ring.initialize(triangulation);
-      triangulation.set_manifold(ring_manifold_id, ring);
+      disc.set_manifold(
+        ring_manifold_id,
+        RingManifold(disc, ring_manifold_id, round_manifold_id));
     }
 
 
 
     // Of a body along the z axis it is that of the section, turned as the body
     // is.
-    template <int dim>
     void
     set_ring_manifold(const Parameters::Scene &scene,
-                      Triangulation<dim>      &triangulation)
+                      Triangulation<3>        &triangulation)
     {
-      if constexpr (dim == 3)
-        if (scene.geometry != GeometryKind::half_ball)
-          {
-            const auto section = std::make_shared<Triangulation<2>>();
-            make_section(scene, *section);
-            GridTools::rotate(scene.rotation_angle * numbers::PI / 180.,
-                              *section);
-            set_round_manifold(scene, *section);
-            interpolate_ring(*section);
-            triangulation.set_manifold(
-              ring_manifold_id, ExtrudedManifold(section, ring_manifold_id));
-            return;
-          }
-      interpolate_ring(triangulation);
+      if (scene.geometry == GeometryKind::half_ball)
+        {
+          TransfiniteInterpolationManifold<3> shell;
+          shell.initialize(triangulation);
+          triangulation.set_manifold(ring_manifold_id, shell);
+          return;
+        }
+      Triangulation<2> section;
+      make_section(scene, section);
+      GridTools::rotate(scene.rotation_angle * numbers::PI / 180., section);
+      triangulation.set_manifold(
+        ring_manifold_id,
+        ExtrudedManifold(std::make_shared<RingManifold>(
+          section, ring_manifold_id, round_manifold_id)));
     }
 
 

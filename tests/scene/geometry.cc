@@ -1,9 +1,10 @@
 // The meshes of a scene: the half disc in numbers, its symmetry, its shape
-// after refinement; cylinders, whose refined cells are found in their section,
-// against those that deal.II finds in space; distortion and rotation of a
-// rectangle; a mesh from a file.
+// after refinement; cells between straight sides and a circle, in the plane and
+// along a cylinder, against their formula and against those that deal.II finds;
+// distortion and rotation of a rectangle; a mesh from a file.
 
 #include <common/scene/extruded_manifold.h>
+#include <common/scene/ring_manifold.h>
 #include <common/scene/scene.h>
 
 #include <deal.II/base/mpi.h>
@@ -17,11 +18,15 @@
 #include <fstream>
 #include <iostream>
 #include <set>
+#include <type_traits>
 
+#include <tests/support/check.h>
+#include <tests/support/random.h>
 #include <tests/support/test.h>
 
 using namespace dealii;
 using namespace Friction;
+using namespace Tests;
 
 namespace test_geometry
 {
@@ -121,19 +126,21 @@ namespace test_geometry
   // cell deal.II's iterations end at 3e-11 of its diameter, in space and in the
   // section; the middle of a cell in space is a mean of 26 points, whose
   // weights have the sum of moduli 7, and errors of the levels add.
+  template <int dim>
   void
-  extruded(std::vector<std::string> overrides)
+  ring(std::vector<std::string> overrides)
   {
-    overrides.push_back("Boundary conditions/Displacement=1: 0, 0, 0");
-    const Scene<3>   scene(parameters(overrides));
-    Triangulation<3> mesh, expected;
+    if (dim == 3)
+      overrides.push_back("Boundary conditions/Displacement=1: 0, 0, 0");
+    const Scene<dim>   scene(parameters(overrides));
+    Triangulation<dim> mesh, expected;
     scene.make_coarse_mesh(mesh);
     scene.make_coarse_mesh(expected);
-    TransfiniteInterpolationManifold<3> in_space;
-    in_space.initialize(expected);
-    expected.set_manifold(1, in_space);
+    TransfiniteInterpolationManifold<dim> by_deal_II;
+    by_deal_II.initialize(expected);
+    expected.set_manifold(1, by_deal_II);
 
-    for (Triangulation<3> *triangulation : {&mesh, &expected})
+    for (Triangulation<dim> *triangulation : {&mesh, &expected})
       {
         triangulation->refine_global();
         unsigned int n = 0;
@@ -146,11 +153,50 @@ namespace test_geometry
     for (unsigned int v = 0; v < mesh.n_vertices() && is_same; ++v)
       is_same =
         mesh.get_vertices()[v].distance(expected.get_vertices()[v]) < 1e-9;
-    const bool is_extruded =
-      dynamic_cast<const ExtrudedManifold *>(&mesh.get_manifold(1)) != nullptr;
-    std::cout << mesh.n_active_cells() << " cells, found in the section "
-              << is_extruded << ", vertices where they are in space " << is_same
-              << std::endl;
+    using Ours = std::conditional_t<dim == 2, RingManifold, ExtrudedManifold>;
+    const bool is_ours =
+      dynamic_cast<const Ours *>(&mesh.get_manifold(1)) != nullptr;
+    std::cout << mesh.n_active_cells() << " cells, found by us " << is_ours
+              << ", vertices where deal.II has them " << is_same << std::endl;
+  }
+
+
+
+  // Points of the first of the cells of the ring, whose side on the circle goes
+  // from 180 to 195 degrees, by their coordinates in it. The cell is x(s,t) =
+  // (1-t) inner(s) + t circle(s); a new point is where the mean of others is.
+  void
+  ring_cell()
+  {
+    const Scene<2>   scene(parameters({"Scene/Geometry=half disc"}));
+    Triangulation<2> mesh;
+    scene.make_coarse_mesh(mesh);
+    const Point<2> inner[2] = {Point<2>(-.681, 0.), Point<2>(-.659, -.214)};
+    const auto     x        = [&](const double s, const double t) {
+      const double angle = (180. + 15. * s) * numbers::PI / 180.;
+      return (1. - t) * (inner[0] + s * (inner[1] - inner[0])) +
+        t * Point<2>(std::cos(angle), std::sin(angle));
+    };
+    Random random(1);
+    double largest = 0.;
+    for (unsigned int i = 0; i < 100; ++i)
+      {
+        Point<2>              mean;
+        std::vector<Point<2>> points;
+        std::vector<double>   weights;
+        const unsigned int    n = 2 + random.below(4);
+        for (unsigned int j = 0; j < n; ++j)
+          {
+            const Point<2> p(random(0., 1.), random(0., 1.));
+            points.push_back(x(p[0], p[1]));
+            weights.push_back(1. / n);
+            mean += p / double(n);
+          }
+        const Point<2> found = mesh.get_manifold(1).get_new_point(
+          make_array_view(points), make_array_view(weights));
+        largest = std::max(largest, found.distance(x(mean[0], mean[1])));
+      }
+    check_below(largest, 1e-14, "means of points of a ring cell");
   }
 
 
@@ -213,11 +259,14 @@ TEST(geometry)
   std::cout.precision(4);
 
   half_disc();
-  extruded({"Scene/Geometry=cylinder"});
-  extruded({"Scene/Geometry=cylinder", "Scene/Rotation angle=20"});
-  extruded({"Scene/Geometry=half cylinder",
-            "Scene/Layers=1",
-            "Scene/Rotation angle=20"});
+  ring_cell();
+  ring<2>({"Scene/Geometry=half disc"});
+  ring<2>({"Scene/Geometry=half disc", "Scene/Rotation angle=20"});
+  ring<3>({"Scene/Geometry=cylinder"});
+  ring<3>({"Scene/Geometry=cylinder", "Scene/Rotation angle=20"});
+  ring<3>({"Scene/Geometry=half cylinder",
+           "Scene/Layers=1",
+           "Scene/Rotation angle=20"});
   print<2>({"Scene/Subdivisions=2, 2", "Scene/Size=3, 1"});
   print<2>({"Scene/Subdivisions=2, 2", "Scene/Distortion=0.3"});
   print<2>({"Scene/Rotation angle=90"});

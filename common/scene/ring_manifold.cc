@@ -1,0 +1,154 @@
+#include <common/scene/ring_manifold.h>
+
+#include <deal.II/base/exceptions.h>
+#include <deal.II/base/geometry_info.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Friction
+{
+  namespace
+  {
+    // Newton's method has arrived if a step is shorter than this part of a
+    // side: its error is the square of that.
+    constexpr double       last_step    = 1e-9;
+    constexpr unsigned int n_most_steps = 20;
+
+    double
+    cross_product(const Tensor<1, 2> &a, const Tensor<1, 2> &b)
+    {
+      return a[0] * b[1] - a[1] * b[0];
+    }
+  } // namespace
+
+
+
+  RingManifold::RingManifold(const Triangulation<2>  &mesh,
+                             const types::manifold_id ring,
+                             const types::manifold_id circle)
+  {
+    for (const auto &cell : mesh.cell_iterators_on_level(0))
+      if (cell->manifold_id() == ring)
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->manifold_id() == circle)
+            {
+              // Faces 2k and 2k+1 are opposite to each other, and have their
+              // vertices in the same order.
+              Cell c;
+              for (unsigned int v = 0; v < 2; ++v)
+                {
+                  using Info = GeometryInfo<2>;
+                  c.outer[v] = cell->vertex(Info::face_to_cell_vertices(f, v));
+                  c.inner[v] =
+                    cell->vertex(Info::face_to_cell_vertices(f ^ 1, v));
+                }
+              c.radius      = c.outer[0].norm();
+              c.first_angle = std::atan2(c.outer[0][1], c.outer[0][0]);
+              c.angle       = std::atan2(cross_product(c.outer[0], c.outer[1]),
+                                   c.outer[0] * c.outer[1]);
+              cells.push_back(c);
+            }
+    Assert(!cells.empty(), ExcMessage("There is no ring."));
+  }
+
+
+
+  std::unique_ptr<Manifold<2>>
+  RingManifold::clone() const
+  {
+    return std::make_unique<RingManifold>(*this);
+  }
+
+
+
+  Point<2>
+  RingManifold::get_new_point(const ArrayView<const Point<2>> &points,
+                              const ArrayView<const double>   &weights) const
+  {
+    // Cells are convex, and what is in the middle of some points of a cell is
+    // in this cell, or on one of its sides if all of them are.
+    Point<2> middle;
+    for (const Point<2> &p : points)
+      middle += p / double(points.size());
+    const Cell *cell    = nullptr;
+    double      outside = 0.;
+    for (const Cell &candidate : cells)
+      {
+        const double distance = candidate.outside(middle);
+        if (cell == nullptr || distance < outside)
+          {
+            cell    = &candidate;
+            outside = distance;
+          }
+      }
+
+    Point<2> mean;
+    for (unsigned int i = 0; i < points.size(); ++i)
+      mean += weights[i] * cell->pull_back(points[i]);
+    return (1. - mean[1]) * cell->at_inner(mean[0]) +
+      mean[1] * cell->at_circle(mean[0]);
+  }
+
+
+
+  Point<2>
+  RingManifold::Cell::at_inner(const double s) const
+  {
+    return inner[0] + s * (inner[1] - inner[0]);
+  }
+
+
+
+  Point<2>
+  RingManifold::Cell::at_circle(const double s) const
+  {
+    const double a = first_angle + s * angle;
+    return {radius * std::cos(a), radius * std::sin(a)};
+  }
+
+
+
+  double
+  RingManifold::Cell::outside(const Point<2> &p) const
+  {
+    const double direction = angle > 0. ? 1. : -1.;
+    return std::max(
+      {direction * cross_product(p - inner[0], outer[0] - inner[0]),
+       direction * cross_product(outer[1] - inner[1], p - inner[1]),
+       direction * cross_product(inner[1] - inner[0], p - inner[0])});
+  }
+
+
+
+  // The point lies on the line from inner(s) to circle(s), whose s is the root
+  // of a function that is nearly linear: Newton's method begins where it would
+  // be if the distances from the two lines at the ends were in proportion.
+  Point<2>
+  RingManifold::Cell::pull_back(const Point<2> &p) const
+  {
+    const Tensor<1, 2> along_side = inner[1] - inner[0];
+    const double ends[2] = {cross_product(p - inner[0], outer[0] - inner[0]),
+                            cross_product(p - inner[1], outer[1] - inner[1])};
+    double       s       = ends[0] / (ends[0] - ends[1]);
+    for (unsigned int step = 0;; ++step)
+      {
+        Assert(step < n_most_steps, ExcMessage("A point is not in its cell."));
+        const Point<2>     on_side   = at_inner(s);
+        const Point<2>     on_circle = at_circle(s);
+        const Tensor<1, 2> line      = on_circle - on_side;
+        const Tensor<1, 2> along_circle(
+          {-angle * on_circle[1], angle * on_circle[0]});
+        const double change = cross_product(p - on_side, line) /
+          (cross_product(p - on_side, along_circle - along_side) -
+           cross_product(along_side, line));
+        s -= change;
+        if (std::abs(change) < last_step || step == n_most_steps)
+          {
+            const Point<2>     start = at_inner(s);
+            const Tensor<1, 2> whole = at_circle(s) - start;
+            return {s, (p - start) * whole / whole.norm_square()};
+          }
+      }
+  }
+} // namespace Friction
