@@ -22,6 +22,7 @@ namespace Friction
   class ExtrudedManifold : public Manifold<3>
   {
   public:
+    /** Keeps the manifold of the section, also in copies. */
     explicit ExtrudedManifold(std::shared_ptr<const Manifold<2>> section);
 
     std::unique_ptr<Manifold<3>> clone() const override;

@@ -18,7 +18,7 @@ namespace Friction
     double
     cross_product(const Tensor<1, 2> &a, const Tensor<1, 2> &b)
     {
-      return a[0] * b[1] - a[1] * b[0];
+      return a * cross_product_2d(b);
     }
   } // namespace
 
@@ -131,24 +131,25 @@ namespace Friction
     const double ends[2] = {cross_product(p - inner[0], outer[0] - inner[0]),
                             cross_product(p - inner[1], outer[1] - inner[1])};
     double       s       = ends[0] / (ends[0] - ends[1]);
-    for (unsigned int step = 0;; ++step)
+    double       change  = 1.;
+    for (unsigned int step = 0;
+         step < n_most_steps && std::abs(change) > last_step;
+         ++step)
       {
-        Assert(step < n_most_steps, ExcMessage("A point is not in its cell."));
         const Point<2>     on_side   = at_inner(s);
         const Point<2>     on_circle = at_circle(s);
         const Tensor<1, 2> line      = on_circle - on_side;
         const Tensor<1, 2> along_circle(
           {-angle * on_circle[1], angle * on_circle[0]});
-        const double change = cross_product(p - on_side, line) /
+        change = cross_product(p - on_side, line) /
           (cross_product(p - on_side, along_circle - along_side) -
            cross_product(along_side, line));
         s -= change;
-        if (std::abs(change) < last_step || step == n_most_steps)
-          {
-            const Point<2>     start = at_inner(s);
-            const Tensor<1, 2> whole = at_circle(s) - start;
-            return {s, (p - start) * whole / whole.norm_square()};
-          }
       }
+    Assert(std::abs(change) <= last_step,
+           ExcMessage("A point is not in its cell."));
+    const Point<2>     start = at_inner(s);
+    const Tensor<1, 2> whole = at_circle(s) - start;
+    return {s, (p - start) * whole / whole.norm_square()};
   }
 } // namespace Friction

@@ -58,8 +58,9 @@ namespace Friction
       /** The point of the circle at @p s. */
       Point<2> at_circle(const double s) const;
 
-      /** How far @p p is outside of the three straight sides, relative to the
-       * cell; negative inside. */
+      /** Positive if @p p is outside of one of the straight sides, negative if
+       * it is inside of all three: the largest of its distances from them, each
+       * times the length of the side. */
       double outside(const Point<2> &p) const;
 
       /** Where x(s, t) is @p p. */
