@@ -410,7 +410,7 @@ namespace Friction
        sweeps,
        "Relaxation sweeps on the leaf mesh, before and after the "
        "coarse correction. 'automatic': 3, and more the less compressible the "
-       "material is, from a Poisson ratio of 0.45 on."},
+       "material is, beyond a Poisson ratio of 0.475."},
       {"Solver",
        "Coarse smoothing steps",
        "automatic",

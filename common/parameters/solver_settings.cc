@@ -9,11 +9,11 @@ namespace Friction
   // corrections reduce displacements that hardly change volumes. Sweeps that
   // follow each other through the cache are the cheapest remedy; see
   // doc/benchmark/incompressible.txt. Three of them up to a Poisson ratio of
-  // 0.45, where the ratio of the two moduli is nine.
+  // 0.475, where the ratio of the two moduli is nineteen.
   unsigned int
   enough_smoothing_steps(const double lame_ratio)
   {
-    return std::lround(std::min(20., std::max(3., lame_ratio / 3.)));
+    return std::lround(std::min(20., std::max(3., lame_ratio / 6.)));
   }
 
 
@@ -28,10 +28,10 @@ namespace Friction
 
 
 
+  // From a Poisson ratio of 0.4756 on.
   bool
   SolverSettings::nearly_incompressible() const
   {
-    return enough_smoothing_steps(lame_ratio) >
-      SolverSettings().coarse_smoothing_steps;
+    return lame_ratio > 19.5;
   }
 } // namespace Friction

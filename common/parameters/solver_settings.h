@@ -153,8 +153,8 @@ namespace Friction
     /// much stiffer it is against a change of volume than against one of shape.
     double lame_ratio = 0.;
 
-    /** Whether the volume of the body, or of a part of it, hardly changes: more
-     * sweeps are wanted then than the levels have otherwise. */
+    /** Whether the volume of the body, or of a part of it, changes so little
+     * that sweeps and coarse corrections become slow. */
     bool nearly_incompressible() const;
 
     /** Whether corrections are those that a user gets who does not choose any.
