@@ -6,10 +6,11 @@ takes; amber where it took more; red where it did not.
     map_fields.py DATA [--list] [MAP ...]
 
 counts them in all maps, and in how many fields the default is not green while
-another solver is ('behind'), and one that is green took less time ('slower'); with
---list also says which these are. The data of a map have
-what was measured and no judgement, which is made here, with the limits of
-runs.py."""
+another solver is ('behind'), in how many of these one that is green took less time
+('slower'), and in how many fields another solver would be green if the easy problem's
+time that the default takes were the measure for all ('one clock'); with --list also
+says which those behind are. The data of a map have what was measured and no judgement, which is made
+here, with the limits of runs.py."""
 
 import argparse
 import csv
@@ -86,9 +87,7 @@ class Fields:
                 raise FieldError(f"{path}: {key} is there twice.")
             self.fields[key] = Field(row)
         for field in self.fields.values():
-            easy = self.easy_pace(field)
-            field.late = (easy is not None and field.pace is not None and
-                          field.pace > runs.GOOD_RATIO * easy)
+            field.late = self.is_late(field, self.easy_pace(field))
 
     def easy_pace(self, field):
         """That of the same solver on the easy problem, of the default if it does
@@ -112,19 +111,27 @@ class Fields:
         return sum(field.status in statuses for field in self.fields.values()
                    if field.solver == solver)
 
-    def behind(self):
+    def behind(self, one_clock=False):
         """Fields of the first solver that are not green while those of others
-        are, and these."""
+        are, and these. With one clock others are in time if they are compared
+        with the easy problem of the first solver, and not with their own."""
         result = []
         for field in self.fields.values():
             if field.solver == self.solvers[0] and field.status != "green":
                 others = [self.fields.get((solver, field.problem, field.size))
                           for solver in self.solvers[1:]]
                 better = [other for other in others
-                          if other and other.status == "green"]
+                          if other and other.solved and not other.helped and
+                          not other.slow and
+                          not (self.is_late(other, self.easy_pace(field))
+                               if one_clock else other.late)]
                 if better:
                     result.append((field, better))
         return result
+
+    @staticmethod
+    def is_late(field, easy):
+        return None not in (easy, field.pace) and field.pace > runs.GOOD_RATIO * easy
 
 
 def seconds_as_text(seconds):
@@ -159,6 +166,11 @@ def describe(field):
     return ", ".join(words)
 
 
+def line_of_those_behind(counts):
+    behind, slower, one_clock = counts[4:]
+    return f"{behind:8}{slower:8}{one_clock:11}"
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("data", type=Path)
@@ -168,8 +180,8 @@ def main():
     files = ([options.data / f"stability-{name}.csv" for name in options.maps] or
              sorted(options.data.glob("stability-*.csv")))
     print(f"{'default in the map':20} {'fields':>6} {'green':>6} {'amber':>6} "
-          f"{'red':>6}  behind  slower  seconds")
-    total = [0] * 6
+          f"{'red':>6}  behind  slower  one clock  seconds")
+    total = [0] * 7
     try:
         for path in files:
             fields = Fields(path)
@@ -177,11 +189,12 @@ def main():
             counts = [fields.count(first, "green", "amber", "red"),
                       *(fields.count(first, status)
                         for status in ("green", "amber", "red")),
-                      len(behind), sum(is_slower(*pair) for pair in behind)]
+                      len(behind), sum(is_slower(*pair) for pair in behind),
+                      len(fields.behind(one_clock=True))]
             total = [a + b for a, b in zip(total, counts)]
             print(f"{path.stem[len('stability-'):]:20} " +
                   " ".join(f"{n:6}" for n in counts[:4]) +
-                  " ".join(f"{n:8}" for n in counts[4:]) + "  " +
+                  line_of_those_behind(counts) + "  " +
                   ("known" if fields.has_seconds else "not known"))
             if options.list:
                 for field, better in behind:
@@ -191,7 +204,7 @@ def main():
     except (FieldError, OSError) as error:
         sys.exit(str(error))
     print(f"{'all':20} " + " ".join(f"{n:6}" for n in total[:4]) +
-          " ".join(f"{n:8}" for n in total[4:]))
+          line_of_those_behind(total))
 
 
 if __name__ == "__main__":

@@ -207,7 +207,7 @@ LIMIT_OF_RELAXATION = 2
 
 # Solutions that take less than so many seconds are repeated, and the shortest time
 # counts.
-REPEAT = 0.05
+REPEAT = 0.2
 
 
 def refined(initial, *meshes):

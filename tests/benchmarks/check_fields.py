@@ -73,6 +73,13 @@ def main():
                       if map_fields.is_slower(field, others)]
             if slower != (["late"] if with_seconds else []):
                 errors.append(f"the default is slower in {slower}")
+            # Measured by the easy problem of the default, newton direct is late
+            # on 'slow', too.
+            one_clock = [field.problem
+                         for field, _ in fields.behind(one_clock=True)]
+            if one_clock != (["late", "failed"] if with_seconds
+                             else ["slow", "failed"]):
+                errors.append(f"by one clock it is behind in {one_clock}")
     print("\n".join(errors) or "OK")
     return 1 if errors else 0
 
