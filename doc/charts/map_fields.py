@@ -9,8 +9,8 @@ counts them in all maps, and in how many fields the default is not green while
 another solver is ('behind'), in how many of these one that is green took less time
 ('slower'), and in how many fields another solver would be green if the easy problem's
 time that the default takes were the measure for all ('one clock'); with --list also
-says which those behind are. The data of a map have what was measured and no judgement, which is made
-here, with the limits of runs.py."""
+says which those behind are. The data of a map have what was measured and no
+judgement, which is made here, with the limits of runs.py."""
 
 import argparse
 import csv
@@ -53,9 +53,16 @@ class Field:
 
     @property
     def status(self):
+        return self.status_if(self.late)
+
+    def status_if(self, late):
         if not self.solved:
             return "red"
-        return "amber" if self.helped or self.slow or self.late else "green"
+        return "amber" if self.helped or self.slow or late else "green"
+
+    def is_late(self, easy_pace):
+        return (None not in (easy_pace, self.pace) and
+                self.pace > runs.GOOD_RATIO * easy_pace)
 
 
 class Fields:
@@ -87,7 +94,7 @@ class Fields:
                 raise FieldError(f"{path}: {key} is there twice.")
             self.fields[key] = Field(row)
         for field in self.fields.values():
-            field.late = self.is_late(field, self.easy_pace(field))
+            field.late = field.is_late(self.easy_pace(field))
 
     def easy_pace(self, field):
         """That of the same solver on the easy problem, of the default if it does
@@ -118,20 +125,16 @@ class Fields:
         result = []
         for field in self.fields.values():
             if field.solver == self.solvers[0] and field.status != "green":
+                easy = self.easy_pace(field)
                 others = [self.fields.get((solver, field.problem, field.size))
                           for solver in self.solvers[1:]]
                 better = [other for other in others
-                          if other and other.solved and not other.helped and
-                          not other.slow and
-                          not (self.is_late(other, self.easy_pace(field))
-                               if one_clock else other.late)]
+                          if other and other.status_if(
+                              other.is_late(easy) if one_clock else other.late)
+                          == "green"]
                 if better:
                     result.append((field, better))
         return result
-
-    @staticmethod
-    def is_late(field, easy):
-        return None not in (easy, field.pace) and field.pace > runs.GOOD_RATIO * easy
 
 
 def seconds_as_text(seconds):
