@@ -13,7 +13,7 @@ namespace Friction
     // Newton's method has arrived if a step is shorter than this part of a
     // side: its error is the square of that.
     constexpr double       last_step    = 1e-9;
-    constexpr unsigned int n_most_steps = 20;
+    constexpr unsigned int n_most_steps = 60;
 
     double
     cross_product(const Tensor<1, 2> &a, const Tensor<1, 2> &b)
@@ -122,16 +122,20 @@ namespace Friction
 
 
   // The point lies on the line from inner(s) to circle(s), whose s is the root
-  // of a function that is nearly linear: Newton's method begins where it would
-  // be if the distances from the two lines at the ends were in proportion.
+  // of a function that has one in the cell, and may have others outside of it.
+  // Newton's method begins where it would be if the distances from the two
+  // lines at the ends were in proportion. A step out of the interval in which
+  // the root is known to be is replaced by half of the interval.
   Point<2>
   RingManifold::Cell::pull_back(const Point<2> &p) const
   {
     const Tensor<1, 2> along_side = inner[1] - inner[0];
     const double ends[2] = {cross_product(p - inner[0], outer[0] - inner[0]),
                             cross_product(p - inner[1], outer[1] - inner[1])};
-    double       s       = ends[0] / (ends[0] - ends[1]);
-    double       change  = 1.;
+    const bool   rises   = ends[0] < ends[1];
+    double       low = 0., high = 1.;
+    double       s      = std::clamp(ends[0] / (ends[0] - ends[1]), low, high);
+    double       change = 1.;
     for (unsigned int step = 0;
          step < n_most_steps && std::abs(change) > last_step;
          ++step)
@@ -141,9 +145,14 @@ namespace Friction
         const Tensor<1, 2> line      = on_circle - on_side;
         const Tensor<1, 2> along_circle(
           {-angle * on_circle[1], angle * on_circle[0]});
-        change = cross_product(p - on_side, line) /
+        const double value = cross_product(p - on_side, line);
+        change             = value /
           (cross_product(p - on_side, along_circle - along_side) -
            cross_product(along_side, line));
+        ((value < 0.) == rises ? low : high) = s;
+        if (std::abs(change) > last_step &&
+            !(low <= s - change && s - change <= high))
+          change = s - .5 * (low + high);
         s -= change;
       }
     Assert(std::abs(change) <= last_step,

@@ -29,9 +29,7 @@ namespace Friction
   {
   public:
     /** Of the coarse cells of @p mesh with manifold id @p ring; their sides on
-     * the circle have manifold id @p circle. Of @p mesh nothing is kept. Cells
-     * as symmetric as those of our discs find the place of a point in a few
-     * steps of Newton's method; a cell that leans far to one side may not. */
+     * the circle have manifold id @p circle. Of @p mesh nothing is kept. */
     RingManifold(const Triangulation<2>  &mesh,
                  const types::manifold_id ring,
                  const types::manifold_id circle);
