@@ -377,6 +377,50 @@ namespace Friction
 
 
 
+    // Circles around the origin, in polar coordinates: what SphericalManifold
+    // is, too, but for lengths below 1e-10, where that takes points for the
+    // same, whatever the radius.
+    class Circles : public Manifold<2>
+    {
+    public:
+      std::unique_ptr<Manifold<2>>
+      clone() const override
+      {
+        return std::make_unique<Circles>();
+      }
+
+      Point<2>
+      get_new_point(const ArrayView<const Point<2>> &points,
+                    const ArrayView<const double>   &weights) const override
+      {
+        // Angles count from a direction between the points.
+        Tensor<1, 2> between;
+        for (const Point<2> &p : points)
+          between += p / p.norm();
+        between /= between.norm();
+        const Tensor<1, 2> across({-between[1], between[0]});
+
+        double radius = 0., angle = 0.;
+        for (unsigned int i = 0; i < points.size(); ++i)
+          {
+            radius += weights[i] * points[i].norm();
+            angle +=
+              weights[i] * std::atan2(across * points[i], between * points[i]);
+          }
+        return Point<2>(radius * std::cos(angle) * between +
+                        radius * std::sin(angle) * across);
+      }
+
+      Tensor<1, 2>
+      normal_vector(const Triangulation<2>::face_iterator &,
+                    const Point<2> &p) const override
+      {
+        return p / p.norm();
+      }
+    };
+
+
+
     // The mantle of a cylinder around the z axis. The class it is derived from
     // finds normals by way of two tangents, to rounding; that leaves them with
     // a small component along the axis, and where the displacement along the
@@ -409,7 +453,7 @@ namespace Friction
     set_round_manifold(const Parameters::Scene &,
                        Triangulation<2> &triangulation)
     {
-      triangulation.set_manifold(round_manifold_id, SphericalManifold<2>());
+      triangulation.set_manifold(round_manifold_id, Circles());
     }
 
 

@@ -1,7 +1,8 @@
 // The meshes of a scene: the half disc in numbers, its symmetry, its shape
-// after refinement; cells between straight sides and a circle, in the plane and
-// along a cylinder, against their formula and against those that deal.II finds;
-// distortion and rotation of a rectangle; a mesh from a file.
+// after refinement, also of a small one; cells between straight sides and a
+// circle, in the plane and along a cylinder, against their formula and against
+// those that deal.II finds; distortion and rotation of a rectangle; a mesh from
+// a file.
 
 #include <common/scene/extruded_manifold.h>
 #include <common/scene/ring_manifold.h>
@@ -119,6 +120,44 @@ namespace test_geometry
         if (level < 5)
           mesh.refine_global();
       }
+  }
+
+
+
+  // A small disc, refined at its lowest point as often as scenes allow: chords
+  // of the arc have the length that their level says.
+  void
+  small_disc()
+  {
+    const double   R = 1e-12;
+    const Scene<2> scene(
+      parameters({"Scene/Geometry=half disc", "Scene/Radius=1e-12"}));
+    Triangulation<2> mesh;
+    scene.make_coarse_mesh(mesh);
+    for (unsigned int level = 0; level < 25 && mesh.n_active_cells() < 1000;
+         ++level)
+      {
+        for (const auto &cell : mesh.active_cell_iterators())
+          for (const unsigned int v : cell->vertex_indices())
+            if (std::abs(cell->vertex(v)[1] + R) < 1e-12 * R &&
+                std::abs(cell->vertex(v)[0]) < 1e-12 * R)
+              cell->set_refine_flag();
+        mesh.execute_coarsening_and_refinement();
+      }
+    double worst = 0.;
+    for (const auto &cell : mesh.active_cell_iterators())
+      for (const auto &face : cell->face_iterators())
+        if (face->at_boundary() && face->boundary_id() == 0)
+          {
+            const double half_angle =
+              numbers::PI / 24. / std::pow(2., cell->level());
+            const double chord  = 2. * R * std::sin(half_angle);
+            const double length = face->vertex(0).distance(face->vertex(1));
+            worst = std::max(worst, std::abs(length / chord - 1.));
+          }
+    std::cout << mesh.n_levels() << " levels, " << mesh.n_active_cells()
+              << " cells" << std::endl;
+    check_below(worst, 1e-6, "chords of a small disc");
   }
 
 
@@ -298,6 +337,7 @@ TEST(geometry)
   std::cout.precision(4);
 
   half_disc();
+  small_disc();
   ring_cells();
   ring<2>({"Scene/Geometry=half disc"});
   ring<2>({"Scene/Geometry=half disc", "Scene/Rotation angle=20"});
