@@ -2,6 +2,7 @@
 #include <common/scene/extruded_manifold.h>
 #include <common/scene/geometries.h>
 #include <common/scene/ring_manifold.h>
+#include <common/scene/round_manifolds.h>
 
 #include <deal.II/base/numbers.h>
 #include <deal.II/base/utilities.h>
@@ -377,83 +378,11 @@ namespace Friction
 
 
 
-    // Circles around the origin, in polar coordinates: what SphericalManifold
-    // is, too, but for lengths below 1e-10, where that takes points for the
-    // same, whatever the radius.
-    class Circles : public Manifold<2>
-    {
-    public:
-      std::unique_ptr<Manifold<2>>
-      clone() const override
-      {
-        return std::make_unique<Circles>();
-      }
-
-      Point<2>
-      get_new_point(const ArrayView<const Point<2>> &points,
-                    const ArrayView<const double>   &weights) const override
-      {
-        // Angles count from a direction between the points.
-        Tensor<1, 2> between;
-        for (const Point<2> &p : points)
-          between += p / p.norm();
-        between /= between.norm();
-        const Tensor<1, 2> across({-between[1], between[0]});
-
-        double radius = 0., angle = 0.;
-        for (unsigned int i = 0; i < points.size(); ++i)
-          {
-            radius += weights[i] * points[i].norm();
-            angle +=
-              weights[i] * std::atan2(across * points[i], between * points[i]);
-          }
-        return Point<2>(radius * std::cos(angle) * between +
-                        radius * std::sin(angle) * across);
-      }
-
-      Tensor<1, 2>
-      normal_vector(const Triangulation<2>::face_iterator &,
-                    const Point<2> &p) const override
-      {
-        return p / p.norm();
-      }
-    };
-
-
-
-    // The mantle of a cylinder around the z axis. The class it is derived from
-    // finds normals by way of two tangents, to rounding; that leaves them with
-    // a small component along the axis, and where the displacement along the
-    // axis is prescribed, contact could not be told from it exactly.
-    class Mantle : public CylindricalManifold<3>
-    {
-    public:
-      Mantle()
-        : CylindricalManifold<3>(/*axis = z*/ 2)
-      {}
-
-      std::unique_ptr<Manifold<3>>
-      clone() const override
-      {
-        return std::make_unique<Mantle>();
-      }
-
-      Tensor<1, 3>
-      normal_vector(const Triangulation<3>::face_iterator &,
-                    const Point<3> &p) const override
-      {
-        const Tensor<1, 3> radial({p[0], p[1], 0.});
-        return radial / radial.norm();
-      }
-    };
-
-
-
     void
     set_round_manifold(const Parameters::Scene &,
                        Triangulation<2> &triangulation)
     {
-      triangulation.set_manifold(round_manifold_id, Circles());
+      triangulation.set_manifold(round_manifold_id, Spheres<2>());
     }
 
 
@@ -463,7 +392,7 @@ namespace Friction
                        Triangulation<3>        &triangulation)
     {
       if (scene.geometry == GeometryKind::half_ball)
-        triangulation.set_manifold(round_manifold_id, SphericalManifold<3>());
+        triangulation.set_manifold(round_manifold_id, Spheres<3>());
       else
         triangulation.set_manifold(round_manifold_id, Mantle());
     }

@@ -15,6 +15,9 @@ namespace Friction
     constexpr double       last_step    = 1e-9;
     constexpr unsigned int n_most_steps = 60;
 
+    // Points are outside of a cell by this part of it at most, from rounding.
+    constexpr double most_outside = 1e-9;
+
     double
     cross_product(const Tensor<1, 2> &a, const Tensor<1, 2> &b)
     {
@@ -133,9 +136,12 @@ namespace Friction
     const double ends[2] = {cross_product(p - inner[0], outer[0] - inner[0]),
                             cross_product(p - inner[1], outer[1] - inner[1])};
     const bool   rises   = ends[0] < ends[1];
-    double       low = 0., high = 1.;
-    double       s      = std::clamp(ends[0] / (ends[0] - ends[1]), low, high);
-    double       change = 1.;
+    Assert(std::max(std::min(ends[0], ends[1]), -std::max(ends[0], ends[1])) <=
+             most_outside * std::abs(ends[1] - ends[0]),
+           ExcMessage("A point is not in its cell."));
+    double low = 0., high = 1.;
+    double s      = std::clamp(ends[0] / (ends[0] - ends[1]), low, high);
+    double change = 1.;
     for (unsigned int step = 0;
          step < n_most_steps && std::abs(change) > last_step;
          ++step)
@@ -156,7 +162,7 @@ namespace Friction
         s -= change;
       }
     Assert(std::abs(change) <= last_step,
-           ExcMessage("A point is not in its cell."));
+           ExcMessage("The place of a point in its cell was not found."));
     const Point<2>     start = at_inner(s);
     const Tensor<1, 2> whole = at_circle(s) - start;
     return {s, (p - start) * whole / whole.norm_square()};

@@ -1,8 +1,8 @@
 // The meshes of a scene: the half disc in numbers, its symmetry, its shape
-// after refinement, also of a small one; cells between straight sides and a
-// circle, in the plane and along a cylinder, against their formula and against
-// those that deal.II finds; distortion and rotation of a rectangle; a mesh from
-// a file.
+// after refinement; small discs and half balls; cells between straight sides
+// and a circle, in the plane and along a cylinder, against their formula and
+// against those that deal.II finds; distortion and rotation of a rectangle; a
+// mesh from a file.
 
 #include <common/scene/extruded_manifold.h>
 #include <common/scene/ring_manifold.h>
@@ -124,8 +124,8 @@ namespace test_geometry
 
 
 
-  // A small disc, refined at its lowest point as often as scenes allow: chords
-  // of the arc have the length that their level says.
+  // A small disc, refined 25 times at its lowest point: chords of the arc have
+  // the length that their level says.
   void
   small_disc()
   {
@@ -162,6 +162,61 @@ namespace test_geometry
 
 
 
+  // The same with a half ball, whose edges differ from each other. Those of the
+  // finest cells, which are around the lowest point, are as long as those of a
+  // ball of radius one are after a few refinements, to the curvature.
+  void
+  small_half_ball()
+  {
+    const auto shortest_and_longest = [](const std::string &radius,
+                                         const unsigned int n_refinements) {
+      const double     R = std::stod(radius);
+      const Scene<3>   scene(parameters({"Scene/Geometry=half ball",
+                                         "Scene/Radius=" + radius,
+                                         "Boundary conditions/Displacement="
+                                           "1: 0, 0, 0"}));
+      Triangulation<3> mesh;
+      scene.make_coarse_mesh(mesh);
+      for (unsigned int level = 0;
+           level < n_refinements && mesh.n_active_cells() < 10000;
+           ++level)
+        {
+          for (const auto &cell : mesh.active_cell_iterators())
+            for (const unsigned int v : cell->vertex_indices())
+              if (cell->vertex(v).distance(Point<3>(0., 0., -R)) < 1e-12 * R)
+                cell->set_refine_flag();
+          mesh.execute_coarsening_and_refinement();
+        }
+      std::pair<double, double> range(R, 0.);
+      double                    off = 0.;
+      for (const auto &cell : mesh.active_cell_iterators())
+        if (cell->level() + 1U == mesh.n_levels())
+          for (const auto &face : cell->face_iterators())
+            if (face->at_boundary() && face->boundary_id() == 0)
+              for (unsigned int l = 0; l < 4; ++l)
+                {
+                  const double length =
+                    face->line(l)->vertex(0).distance(face->line(l)->vertex(1));
+                  range.first  = std::min(range.first, length);
+                  range.second = std::max(range.second, length);
+                  off =
+                    std::max(off, std::abs(face->vertex(l).norm() / R - 1.));
+                }
+      std::cout << mesh.n_levels() << " levels, " << mesh.n_active_cells()
+                << " cells, off sphere " << (off > 1e-14) << std::endl;
+      const double unit = R / std::pow(2., mesh.n_levels());
+      return std::make_pair(range.first / unit, range.second / unit);
+    };
+    const auto large = shortest_and_longest("1", 10);
+    const auto small = shortest_and_longest("1e-12", 20);
+    check_below(std::max(std::abs(small.first / large.first - 1.),
+                         std::abs(small.second / large.second - 1.)),
+                1e-3,
+                "edges of a small half ball");
+  }
+
+
+
   // Cells of the ring have manifold id 1. Cells are refined everywhere, and
   // then every third one, so that there are all kinds of faces. In a coarse
   // cell deal.II's iterations end at 3e-11 of its diameter, in space and in the
@@ -177,6 +232,8 @@ namespace test_geometry
     Triangulation<dim> mesh, expected;
     scene.make_coarse_mesh(mesh);
     scene.make_coarse_mesh(expected);
+    if (dim == 2)
+      expected.set_manifold(0, SphericalManifold<dim>());
     TransfiniteInterpolationManifold<dim> by_deal_II;
     by_deal_II.initialize(expected);
     expected.set_manifold(1, by_deal_II);
@@ -338,6 +395,7 @@ TEST(geometry)
 
   half_disc();
   small_disc();
+  small_half_ball();
   ring_cells();
   ring<2>({"Scene/Geometry=half disc"});
   ring<2>({"Scene/Geometry=half disc", "Scene/Rotation angle=20"});
