@@ -410,7 +410,7 @@ namespace Friction
        sweeps,
        "Relaxation sweeps on the leaf mesh, before and after the "
        "coarse correction. 'automatic': 3, and more the less compressible the "
-       "material is, beyond a Poisson ratio of 0.475."},
+       "material is, beyond a Poisson ratio of 0.477."},
       {"Solver",
        "Coarse smoothing steps",
        "automatic",

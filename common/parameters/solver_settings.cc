@@ -6,10 +6,11 @@
 namespace Friction
 {
   // The less a material can be compressed, the worse sweeps and coarse
-  // corrections reduce displacements that hardly change volumes. Sweeps that
-  // follow each other through the cache are the cheapest remedy; see
-  // doc/benchmark/incompressible.txt. Three of them up to a Poisson ratio of
-  // 0.475, where the ratio of the two moduli is nineteen.
+  // corrections reduce displacements that hardly change volumes. More sweeps,
+  // which follow each other through the cache, make iterations arrive that
+  // would not otherwise, and cost hardly any time where these arrive as well;
+  // see doc/benchmark/incompressible.txt. Three of them up to a Poisson ratio
+  // of 0.477, where the ratio of the two moduli is twenty-one.
   unsigned int
   enough_smoothing_steps(const double lame_ratio)
   {

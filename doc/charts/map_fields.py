@@ -7,9 +7,9 @@ takes; amber where it took more; red where it did not.
 
 counts them in all maps, and in how many fields the default is not green while
 another solver is ('behind'), in how many of these one that is green took less time
-('slower'), and in how many fields another solver would be green if the easy problem's
-time that the default takes were the measure for all ('one clock'); with --list also
-says which those behind are. The data of a map have what was measured and no
+('slower'), and in how many fields the default is not green while another solver would
+be if the easy problem's time that the default takes were the measure for all ('one
+clock'); with --list also says which those behind are. The data of a map have what was measured and no
 judgement, which is made here, with the limits of runs.py."""
 
 import argparse

@@ -115,7 +115,7 @@ def main():
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("programs", nargs=5)
     parser.add_argument("--before", nargs=2)
-    parser.add_argument("--repeat", type=int, default=2)
+    parser.add_argument("--repeat", type=int, default=4)
     parser.add_argument("--quick", action="store_true")
     arguments = parser.parse_args()
     program = dict(zip("23", arguments.programs[:2]))
