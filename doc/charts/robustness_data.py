@@ -3,12 +3,13 @@
 all, and writes what came of it:
 
     robustness_data.py --solvers=PROGRAM --work=FOLDER --table=FILE
-        [--seeds2d=FROM-TO] [--seeds3d=FROM-TO] [--limit=SECONDS] [--all]
+        [--seeds2d=SEEDS] [--seeds3d=SEEDS] [--limit=SECONDS] [--all]
+        [--default-only]
     robustness_data.py --show DIM SEED
 
-PROGRAM is benchmark-solvers. A problem that the product refuses is an error, since
-it was drawn to be well posed; with --all so is one that the default does not solve.
-With --show a problem is printed as a scene file, and the options that
+PROGRAM is benchmark-solvers, SEEDS are numbers and ranges, as 1-6,17. A problem that
+the product refuses is an error, since it was drawn to be well posed; with --all so is
+one that the default does not solve. With --show a problem is printed as a scene file, and the options that
 benchmark-solvers needs besides."""
 
 import argparse
@@ -33,15 +34,16 @@ def options_of(problem):
     return [f"--guess={problem.guess}", f"--inclusion={problem.inclusion:.6g}"]
 
 
-def solve(program, work, problem, limit):
+def solve(problem, solvers, options):
     """The rows of one problem; what went wrong, if anything."""
+    work, limit = options.work, options.limit
     name = f"{problem.dim}d-{problem.seed}"
     scene, table = work / f"{name}.prm", work / f"{name}.csv"
     scene.write_text(problem.scene())
     table.unlink(missing_ok=True)
-    command = [program, problem.dim, scene, f"--table={table}",
+    command = [options.program, problem.dim, scene, f"--table={table}",
                f"--limit={limit}", f"--repeat={runs.REPEAT}",
-               f"--solvers={','.join(SOLVERS)}",
+               f"--solvers={','.join(solvers)}",
                *options_of(problem)]
     with open(work / f"{name}.log", "w") as log:
         try:
@@ -57,7 +59,7 @@ def solve(program, work, problem, limit):
     if status == 1 and not found:
         return [], f"{name} was refused: {(work / f'{name}.log').read_text()}"
     rows = []
-    for solver in SOLVERS:
+    for solver in solvers:
         row = found.get(solver)
         if row is None:
             rows.append([problem.dim, problem.seed, solver, "", "", "", 0, "", "",
@@ -73,8 +75,11 @@ def solve(program, work, problem, limit):
 
 
 def seeds_of(text):
-    first, last = map(int, text.split("-"))
-    return range(first, last + 1)
+    seeds = []
+    for part in text.split(","):
+        ends = [int(number) for number in part.split("-")]
+        seeds += range(ends[0], ends[-1] + 1)
+    return seeds
 
 
 def show(dim, seed):
@@ -94,6 +99,7 @@ def main():
     parser.add_argument("--seeds3d", type=seeds_of, default=seeds_of("1-200"))
     parser.add_argument("--limit", type=float, default=30.)
     parser.add_argument("--all", action="store_true")
+    parser.add_argument("--default-only", action="store_true")
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
     options.table.parent.mkdir(parents=True, exist_ok=True)
@@ -106,8 +112,8 @@ def main():
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(COLUMNS)
         for n, problem in enumerate(problems, 1):
-            rows, refusal = solve(options.program, options.work, problem,
-                                  options.limit)
+            rows, refusal = solve(
+                problem, SOLVERS[:1] if options.default_only else SOLVERS, options)
             writer.writerows(rows)
             file.flush()
             if refusal:
