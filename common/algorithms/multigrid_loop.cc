@@ -76,6 +76,29 @@ namespace Friction
 
 
 
+  namespace
+  {
+    // Whether more components are held in each of the last cycles than in each
+    // of as many before, or fewer, and the last ones have changed their number
+    // by one per cycle.
+    bool
+    contact_zone_spreads(const std::vector<CycleInfo> &cycles,
+                         const unsigned int            n_last)
+    {
+      const auto less = [](const CycleInfo &a, const CycleInfo &b) {
+        return a.truncated < b.truncated;
+      };
+      const auto last   = cycles.end() - n_last;
+      const auto now    = std::minmax_element(last, cycles.end(), less);
+      const auto before = std::minmax_element(last - n_last, last, less);
+      return (less(*before.second, *now.first) ||
+              less(*now.second, *before.first)) &&
+        std::abs(cycles.back().truncated - last->truncated) >= n_last;
+    }
+  } // namespace
+
+
+
   double
   MultigridResult::contraction() const
   {
@@ -95,7 +118,7 @@ namespace Friction
     Assert(patience >= 5, ExcMessage("There is nothing to compare."));
     const unsigned int window = 2 * patience / 5;
     const unsigned int n      = cycles.size();
-    if (n < patience)
+    if (n < patience || contact_zone_spreads(cycles, window))
       return false;
     const auto smallest = [&](const unsigned int end) {
       double result = cycles[end - window].increment;

@@ -147,8 +147,10 @@ namespace Friction
      * Whether the iteration is getting nowhere: at the pace of the last cycles,
      * two fifths of @p patience, measured against as many before, the
      * increments would not come down to @p tolerance within @p maximum_cycles
-     * altogether. Says no as long as there are fewer cycles than @p patience;
-     * contact zones take some to grow into place.
+     * altogether. Says no as long as there are fewer cycles than @p patience,
+     * since contact zones take some to grow into place, and as long as they
+     * do: if more components are held in all of the last cycles than in those
+     * before, or fewer, and their number still changes by one per cycle.
      */
     bool stalls(const double       tolerance,
                 const unsigned int maximum_cycles,

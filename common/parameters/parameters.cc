@@ -836,7 +836,8 @@ namespace Friction
       for (const auto &region : parameters.regions)
         solver.lame_ratio =
           std::max(solver.lame_ratio, lame_ratio(region.material));
-      const unsigned int sweeps = enough_smoothing_steps(solver.lame_ratio);
+      const unsigned int sweeps = enough_smoothing_steps(
+        solver.lame_ratio, parameters.material.volumetric_strain());
       solver.smoothing_steps = values.steps("Solver/Smoothing steps", sweeps);
       solver.coarse_smoothing_steps =
         values.steps("Solver/Coarse smoothing steps", std::max(6u, sweeps));

@@ -171,7 +171,8 @@ namespace Friction
 
   /** How many smoothing steps a body of this ratio $\lambda/\mu$ needs, which
    * is what `automatic` means. */
-  unsigned int enough_smoothing_steps(const double lame_ratio);
+  unsigned int enough_smoothing_steps(const double           lame_ratio,
+                                      const VolumetricStrain strain);
 
   /** The same for recombined steps. */
   unsigned int enough_recombined_steps(const double lame_ratio);

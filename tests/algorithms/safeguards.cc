@@ -11,6 +11,7 @@
 
 #include <Eigen/LU>
 
+#include <functional>
 #include <iostream>
 
 #include <tests/support/check.h>
@@ -27,13 +28,16 @@ namespace test_safeguards
   test_stalling()
   {
     std::cout << "Stalling" << std::endl;
-    const auto stalls_at = [](const auto        &increment,
-                              const unsigned int patience = 50) {
+    using Sequence       = std::function<double(const unsigned int)>;
+    const auto stalls_at = [](const Sequence    &increment,
+                              const unsigned int patience  = 50,
+                              const Sequence    &truncated = nullptr) {
       MultigridResult result;
       for (unsigned int cycle = 0; cycle < 200; ++cycle)
         {
           CycleInfo info = {};
           info.increment = increment(cycle);
+          info.truncated = truncated ? truncated(cycle) : 0.;
           result.cycles.push_back(info);
           if (info.increment <= 1e-9)
             return 0u;
@@ -62,6 +66,17 @@ namespace test_safeguards
     check(
       stalls_at([](const unsigned int c) { return std::pow(.89, c); }, 15) == 0,
       "and a contraction of 0.89 is not");
+    const auto constant = [](const unsigned int) { return 1e-3; };
+    check(stalls_at(
+            constant,
+            50,
+            [](const unsigned int c) { return std::min(2. * c, 150.); }) == 86,
+          "nor is a contact zone that grows, until it has its size");
+    check(stalls_at(constant,
+                    50,
+                    [](const unsigned int c) { return c % 2 ? 100. : 0.; }) ==
+            50,
+          "phases that go to and fro are");
   }
 
 

@@ -116,20 +116,29 @@ TEST(parameters)
   }
 
   // The sweeps that no entry asks for.
-  for (const std::string nu : {"0", "0.3", "0.45", "0.49", "0.4999"})
+  for (const std::string nu :
+       {"0", "0.3", "0.45", "0.475", "0.476", "0.49", "0.495", "0.4999"})
     {
-      const SolverSettings automatic =
-        read_parameters("some.scene.prm", {"Material/Poisson ratio=" + nu})
+      const std::string    ratio = "Material/Poisson ratio=" + nu;
+      const SolverSettings pointwise =
+        read_parameters("some.scene.prm", {ratio}).solver;
+      const SolverSettings mean =
+        read_parameters("some.scene.prm",
+                        {ratio, "Material/Volumetric strain=mean"})
           .solver;
       const SolverSettings given =
         read_parameters("some.scene.prm",
-                        {"Material/Poisson ratio=" + nu,
+                        {ratio,
                          "Solver/Smoothing steps=2",
                          "Solver/Coarse smoothing steps=1"})
           .solver;
-      std::cout << "sweeps for nu = " << nu << ": " << automatic.smoothing_steps
-                << ", " << automatic.coarse_smoothing_steps << "; given "
-                << given.smoothing_steps << ", " << given.coarse_smoothing_steps
+      std::cout << "sweeps for nu = " << nu << ": " << pointwise.smoothing_steps
+                << ", " << pointwise.coarse_smoothing_steps << "; mean strains "
+                << mean.smoothing_steps << ", " << mean.coarse_smoothing_steps
+                << "; given " << given.smoothing_steps << ", "
+                << given.coarse_smoothing_steps
+                << (pointwise.nearly_incompressible() ? ", hardly compressible"
+                                                      : "")
                 << std::endl;
     }
 
