@@ -410,7 +410,7 @@ namespace Friction
        sweeps,
        "Relaxation sweeps on the leaf mesh, before and after the "
        "coarse correction. 'automatic': 3, and more the less compressible the "
-       "material is, beyond a Poisson ratio of 0.486, or of 0.477 with mean "
+       "material is, beyond a Poisson ratio of 0.477, or of 0.456 with mean "
        "strains."},
       {"Solver",
        "Coarse smoothing steps",

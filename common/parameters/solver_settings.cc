@@ -11,12 +11,12 @@ namespace Friction
   // would not otherwise, and cost hardly any time where these arrive as well;
   // see doc/benchmark/incompressible.txt. Mean strains need more of them, since
   // they leave more displacements that change no volume: three up to a Poisson
-  // ratio of 0.477, where the ratio of the two moduli is twenty-one, and with
-  // pointwise strains up to 0.486 and thirty-five.
+  // ratio of 0.456, where the ratio of the two moduli is ten, and with
+  // pointwise strains up to 0.477 and twenty-one.
   unsigned int
   enough_smoothing_steps(const double lame_ratio, const VolumetricStrain strain)
   {
-    const double per_step = strain == VolumetricStrain::mean ? 6. : 10.;
+    const double per_step = strain == VolumetricStrain::mean ? 3. : 6.;
     return std::lround(std::min(20., std::max(3., lame_ratio / per_step)));
   }
 
