@@ -55,29 +55,9 @@ namespace Friction
           return false;
       return cycles.back().increment > .9 * cycles[n - 1 - window].increment;
     }
-  } // namespace
 
 
 
-  template <int dim>
-  double
-  smallest_squared_norm(const DiscreteProblem<dim> &problem,
-                        const VectorType           &u)
-  {
-    const NodeBlockMatrix<dim> &A   = problem.stiffness.blocks();
-    double                      sum = 0;
-    for (unsigned int i = 0; i < A.n_rows(); ++i)
-      if (!A.is_empty(i))
-        sum += trace<dim>(A.diagonal(i)) *
-          dot<dim>(u.begin() + dim * i, u.begin() + dim * i);
-    return std::max(1e-12 * sum_over_processes(sum, problem.communicator()),
-                    1e-300);
-  }
-
-
-
-  namespace
-  {
     // Whether more components are held in each of the last cycles than in each
     // of as many before, or fewer, and the last ones have changed their number
     // by one per cycle.
@@ -96,6 +76,23 @@ namespace Friction
         std::abs(cycles.back().truncated - last->truncated) >= n_last;
     }
   } // namespace
+
+
+
+  template <int dim>
+  double
+  smallest_squared_norm(const DiscreteProblem<dim> &problem,
+                        const VectorType           &u)
+  {
+    const NodeBlockMatrix<dim> &A   = problem.stiffness.blocks();
+    double                      sum = 0;
+    for (unsigned int i = 0; i < A.n_rows(); ++i)
+      if (!A.is_empty(i))
+        sum += trace<dim>(A.diagonal(i)) *
+          dot<dim>(u.begin() + dim * i, u.begin() + dim * i);
+    return std::max(1e-12 * sum_over_processes(sum, problem.communicator()),
+                    1e-300);
+  }
 
 
 

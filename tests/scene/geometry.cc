@@ -124,6 +124,28 @@ namespace test_geometry
 
 
 
+  // Refine the cells around the lowest point of a round body, unless there are
+  // far more of them than there can be.
+  template <int dim>
+  void
+  refine_lowest_point(Triangulation<dim> &mesh,
+                      const double        radius,
+                      const unsigned int  n_times)
+  {
+    Point<dim> lowest;
+    lowest[dim - 1] = -radius;
+    for (unsigned int i = 0; i < n_times && mesh.n_active_cells() < 1000; ++i)
+      {
+        for (const auto &cell : mesh.active_cell_iterators())
+          for (const unsigned int v : cell->vertex_indices())
+            if (cell->vertex(v).distance(lowest) < 1e-12 * radius)
+              cell->set_refine_flag();
+        mesh.execute_coarsening_and_refinement();
+      }
+  }
+
+
+
   // A small disc, refined 25 times at its lowest point: chords of the arc have
   // the length that their level says.
   void
@@ -134,16 +156,7 @@ namespace test_geometry
       parameters({"Scene/Geometry=half disc", "Scene/Radius=1e-12"}));
     Triangulation<2> mesh;
     scene.make_coarse_mesh(mesh);
-    for (unsigned int level = 0; level < 25 && mesh.n_active_cells() < 1000;
-         ++level)
-      {
-        for (const auto &cell : mesh.active_cell_iterators())
-          for (const unsigned int v : cell->vertex_indices())
-            if (std::abs(cell->vertex(v)[1] + R) < 1e-12 * R &&
-                std::abs(cell->vertex(v)[0]) < 1e-12 * R)
-              cell->set_refine_flag();
-        mesh.execute_coarsening_and_refinement();
-      }
+    refine_lowest_point(mesh, R, 25);
     double worst = 0.;
     for (const auto &cell : mesh.active_cell_iterators())
       for (const auto &face : cell->face_iterators())
@@ -177,16 +190,7 @@ namespace test_geometry
                                            "1: 0, 0, 0"}));
       Triangulation<3> mesh;
       scene.make_coarse_mesh(mesh);
-      for (unsigned int level = 0;
-           level < n_refinements && mesh.n_active_cells() < 10000;
-           ++level)
-        {
-          for (const auto &cell : mesh.active_cell_iterators())
-            for (const unsigned int v : cell->vertex_indices())
-              if (cell->vertex(v).distance(Point<3>(0., 0., -R)) < 1e-12 * R)
-                cell->set_refine_flag();
-          mesh.execute_coarsening_and_refinement();
-        }
+      refine_lowest_point(mesh, R, n_refinements);
       std::pair<double, double> range(R, 0.);
       double                    off = 0.;
       for (const auto &cell : mesh.active_cell_iterators())
