@@ -14,9 +14,11 @@ namespace Friction
     // phases are told wrongly.
     constexpr double largest_forcing = 1e-2;
 
-    // What is short for a step, and how many such steps in a row lead nowhere.
+    // What is short for a step, and how many such steps lead nowhere, in a row
+    // and altogether: where phases go round, short steps alternate with others.
     constexpr double       shortest         = 1. / 64;
-    constexpr unsigned int most_short_steps = 3, most_steps = 60;
+    constexpr unsigned int most_short_steps = 3, most_short_in_all = 5,
+                           most_steps = 60;
 
     // What is left of the largest violation may be rounding.
     constexpr double rounding_of_violations = 1e-12;
@@ -116,8 +118,9 @@ namespace Friction
     VectorType      rhs(residual), step(residual), unknown(residual),
       start(residual), start_residual(residual);
     double       forcing = largest_forcing, before = 0., largest = 0.;
-    unsigned int n_short = 0;
-    for (steps = 0; steps < most_steps && n_short < most_short_steps;)
+    unsigned int n_short = 0, n_short_in_all = 0;
+    for (steps = 0; steps < most_steps && n_short < most_short_steps &&
+         n_short_in_all < most_short_in_all;)
       {
         equations.update(laws);
         linear_solver.update(equations);
@@ -164,6 +167,7 @@ namespace Friction
           }
         ++steps;
         n_short = length <= shortest ? n_short + 1 : 0;
+        n_short_in_all += length <= shortest;
         problem.stiffness.residual(residual, problem.forces, u);
         set_state(state, residual);
 

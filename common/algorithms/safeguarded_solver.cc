@@ -442,8 +442,10 @@ namespace Friction
 
 
 
-  // The coefficient is doubled for as long as that works, and multiplied by the
-  // square root of the last factor where it does not.
+  // The guess may be a good one: so it is tried with less and less friction
+  // until Newton's method arrives, and from there the coefficient is doubled
+  // for as long as that works, and multiplied by the square root of the last
+  // factor where it does not.
   template <int dim>
   SolverReport
   SafeguardedSolver<dim>::continuation(const Search &search, double &solved)
@@ -453,36 +455,38 @@ namespace Friction
     const std::shared_ptr<void> restores_coefficient(
       nullptr, [&](void *) { problem.friction_coefficient = target; });
     // Where most problems are easy.
-    constexpr double       easy            = .25;
+    const double           easy            = std::min(.25, target / 2);
+    constexpr double       way_down        = 4;
     constexpr double       smallest_factor = 1.05;
-    double                 factor          = 2;
     SolverReport           report;
     std::vector<CycleInfo> cycles;
-    solved = 0;
-    while (solved < target && !budget->is_spent())
+    solved                   = 0;
+    const auto try_to_arrive = [&](const double coefficient) {
+      VectorType   next            = search.u;
+      ContactState next_state      = search.state;
+      problem.friction_coefficient = coefficient;
+      report =
+        newton_method({next, next_state, search.progress, search.accuracy});
+      cycles.insert(cycles.end(), report.cycles.begin(), report.cycles.end());
+      if (report.converged)
+        {
+          solved       = coefficient;
+          search.u     = next;
+          search.state = next_state;
+        }
+      return report.converged;
+    };
+
+    for (double coefficient = target; coefficient > easy;)
       {
-        const double coefficient     = solved == 0
-              ? std::min(easy, target / 2)
-              : std::min(solved * factor, target);
-        VectorType   next            = search.u;
-        ContactState next_state      = search.state;
-        problem.friction_coefficient = coefficient;
-        report =
-          newton_method({next, next_state, search.progress, search.accuracy});
-        cycles.insert(cycles.end(), report.cycles.begin(), report.cycles.end());
-        if (report.converged)
-          {
-            solved       = coefficient;
-            search.u     = next;
-            search.state = next_state;
-          }
-        else
-          {
-            factor = std::sqrt(factor);
-            if (solved == 0 || factor < smallest_factor)
-              break;
-          }
+        coefficient = std::max(easy, coefficient / way_down);
+        if (try_to_arrive(coefficient) || budget->is_spent())
+          break;
       }
+    for (double factor = 2; solved > 0 && solved < target &&
+         factor >= smallest_factor && !budget->is_spent();)
+      if (!try_to_arrive(std::min(solved * factor, target)))
+        factor = std::sqrt(factor);
     report.converged = report.converged && solved == target;
     report.cycles    = cycles;
     if (!report.converged)
