@@ -3,6 +3,7 @@
 #include <common/scene/geometries.h>
 #include <common/scene/ring_manifold.h>
 #include <common/scene/round_manifolds.h>
+#include <common/scene/shell_manifold.h>
 
 #include <deal.II/base/numbers.h>
 #include <deal.II/base/utilities.h>
@@ -540,9 +541,9 @@ namespace Friction
     {
       if (scene.geometry == GeometryKind::half_ball)
         {
-          TransfiniteInterpolationManifold<3> shell;
-          shell.initialize(triangulation);
-          triangulation.set_manifold(ring_manifold_id, shell);
+          triangulation.set_manifold(
+            ring_manifold_id,
+            ShellManifold(triangulation, ring_manifold_id, round_manifold_id));
           return;
         }
       Triangulation<2> section;

@@ -1,0 +1,214 @@
+// Cells between straight sides and a sphere: means of points of a cell against
+// the formula of its places, and the half ball against the one that deal.II
+// makes.
+
+#include <common/scene/round_manifolds.h>
+#include <common/scene/scene.h>
+#include <common/scene/shell_manifold.h>
+
+#include <deal.II/grid/manifold_lib.h>
+#include <deal.II/grid/tria.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <numeric>
+#include <vector>
+
+#include <tests/support/check.h>
+#include <tests/support/random.h>
+#include <tests/support/test.h>
+
+using namespace dealii;
+using namespace Friction;
+using namespace Tests;
+
+namespace test_shell_manifold
+{
+  using Side = std::array<Tensor<1, 3>, 4>;
+
+  // One coarse cell between a straight side and a sphere; or the mesh of one
+  // whose coordinate r is the first.
+  void
+  make_cell(const Side       &side,
+            const double      radius,
+            const bool        r_is_first,
+            Triangulation<3> &mesh)
+  {
+    std::vector<Point<3>>    vertices;
+    std::vector<CellData<3>> cells(1);
+    for (const Tensor<1, 3> &p : side)
+      vertices.emplace_back(p);
+    for (const Tensor<1, 3> &p : side)
+      vertices.emplace_back(radius / p.norm() * p);
+    if (r_is_first)
+      cells[0].vertices = {0, 4, 1, 5, 2, 6, 3, 7};
+    else
+      cells[0].vertices = {0, 1, 2, 3, 4, 5, 6, 7};
+    mesh.create_triangulation(vertices, cells, SubCellData());
+    const auto cell = mesh.begin_active();
+    cell->set_manifold_id(1);
+    cell->face(r_is_first ? 1 : 5)->set_manifold_id(0);
+  }
+
+
+
+  // A new point is where the weighted mean of others is, in the coordinates of
+  // the cell.
+  double
+  error_of_means(const Side &side, const double radius, const bool r_is_first)
+  {
+    Triangulation<3> mesh;
+    make_cell(side, radius, r_is_first, mesh);
+    const ShellManifold manifold(mesh, 1, 0);
+    const auto          x = [&](const Point<3> &place) {
+      Tensor<1, 3> c;
+      for (unsigned int v = 0; v < 4; ++v)
+        c += (v % 2 == 0 ? 1. - place[0] : place[0]) *
+          (v / 2 == 0 ? 1. - place[1] : place[1]) * side[v];
+      const double r = place[2];
+      return Point<3>(((1. - r) * c.norm() + r * radius) / c.norm() * c);
+    };
+
+    Random random(1);
+    double largest = 0.;
+    for (unsigned int i = 0; i < 200; ++i)
+      {
+        std::vector<Point<3>> places, points;
+        std::vector<double>   weights;
+        const unsigned int    n = 2 + random.below(4);
+        // On a side of the cell, now and then.
+        const unsigned int held  = random.below(6);
+        const double       value = random.below(2);
+        for (unsigned int j = 0; j < n; ++j)
+          {
+            Point<3> p(random(0., 1.), random(0., 1.), random(0., 1.));
+            if (held < 3)
+              p[held] = value;
+            places.push_back(p);
+            points.push_back(x(p));
+            weights.push_back(random(0., 1.));
+          }
+        const double sum = std::accumulate(weights.begin(), weights.end(), 0.);
+        Point<3>     mean;
+        for (unsigned int j = 0; j < n; ++j)
+          {
+            weights[j] /= sum;
+            mean += weights[j] * places[j];
+          }
+        const Point<3> found = manifold.get_new_point(make_array_view(points),
+                                                      make_array_view(weights));
+        largest = std::max(largest, found.distance(x(mean)) / radius);
+      }
+    return largest;
+  }
+
+
+
+  void
+  means_in_cells()
+  {
+    const auto direction = [](const double x, const double y, const double z) {
+      return Tensor<1, 3>({x, y, z});
+    };
+    // A quarter of a side of a cube; one whose corners are not in a plane; one
+    // that is a trapezoid, and nearly a triangle.
+    const Side flat   = {{direction(0., 0., -.5),
+                          direction(.5, 0., -.5),
+                          direction(0., .5, -.5),
+                          direction(.5, .5, -.5)}},
+               bent   = {{direction(.1, -.1, -.7),
+                          direction(.4, 0., -.3),
+                          direction(0., .5, -.6),
+                          direction(.5, .4, -.2)}},
+               narrow = {{direction(-.3, 0., -.5),
+                          direction(.3, 0., -.5),
+                          direction(-.01, .4, -.5),
+                          direction(.01, .4, -.5)}};
+    for (const bool r_is_first : {false, true})
+      {
+        check_below(error_of_means(flat, 1., r_is_first),
+                    1e-14,
+                    "means of points of a cell");
+        check_below(error_of_means(bent, 1., r_is_first),
+                    1e-14,
+                    "the same, with a bent side");
+        check_below(error_of_means(narrow, 1., r_is_first),
+                    1e-14,
+                    "the same, with a narrow one");
+      }
+    Side small = bent;
+    for (Tensor<1, 3> &p : small)
+      p *= 1e-30;
+    check_below(error_of_means(small, 1e-30, false),
+                1e-14,
+                "the same, where all is small");
+  }
+
+
+
+  // Two refinements: vertices on the boundary and in the core are where
+  // deal.II's manifolds have them, and in between they are near to that, in
+  // parts of the radius, where cells are an eighth long.
+  void
+  half_ball(const std::string &angle)
+  {
+    std::ofstream("scene.prm") << "subsection Boundary conditions\n  set "
+                                  "Displacement = 1: 0, 0, 0\nend\n";
+    const Scene<3>   scene(read_parameters("scene.prm",
+                                         {"Scene/Geometry=half ball",
+                                            "Scene/Radius=2",
+                                            "Scene/Rotation angle=" + angle}));
+    Triangulation<3> mesh, expected;
+    scene.make_coarse_mesh(mesh);
+    scene.make_coarse_mesh(expected);
+    expected.set_manifold(0, SphericalManifold<3>());
+    TransfiniteInterpolationManifold<3> by_deal_II;
+    by_deal_II.initialize(expected);
+    expected.set_manifold(1, by_deal_II);
+    for (Triangulation<3> *triangulation : {&mesh, &expected})
+      triangulation->refine_global(2);
+
+    std::vector<bool> is_inside(mesh.n_vertices(), true);
+    for (const auto &cell : mesh.active_cell_iterators())
+      {
+        if (cell->manifold_id() == numbers::flat_manifold_id)
+          for (const unsigned int v : cell->vertex_indices())
+            is_inside[cell->vertex_index(v)] = false;
+        for (const auto &face : cell->face_iterators())
+          if (face->at_boundary() && face->boundary_id() == 0)
+            for (const unsigned int v : face->vertex_indices())
+              is_inside[face->vertex_index(v)] = false;
+      }
+    double inside = 0., others = 0.;
+    for (unsigned int v = 0; v < mesh.n_vertices(); ++v)
+      {
+        const double distance =
+          mesh.get_vertices()[v].distance(expected.get_vertices()[v]) / 2.;
+        (is_inside[v] ? inside : others) =
+          std::max(is_inside[v] ? inside : others, distance);
+      }
+    std::cout << mesh.n_active_cells() << " cells, found by us "
+              << (dynamic_cast<const ShellManifold *>(&mesh.get_manifold(1)) !=
+                  nullptr)
+              << ", off in the shell "
+              << (inside > 1e-3     ? "much"
+                    : inside > 1e-9 ? "a little"
+                                    : "no")
+              << std::endl;
+    if (std::getenv("TELL"))
+      std::cout << inside << std::endl;
+    check_below(others, 1e-9, "vertices on the boundary and in the core");
+  }
+} // namespace test_shell_manifold
+
+
+
+TEST(shell_manifold)
+{
+  test_shell_manifold::means_in_cells();
+  test_shell_manifold::half_ball("0");
+  test_shell_manifold::half_ball("20");
+}
