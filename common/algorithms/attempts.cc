@@ -243,8 +243,9 @@ namespace Friction
     if (!begin(is_newton))
       return;
     start_anew();
-    attempt("Newton's method" + where_newton_is(),
-            [&]() { return solver.newton_method(search); });
+    attempt("Newton's method" + where_newton_is(), [&]() {
+      return solver.newton_method(search, solver.budget->cycles_left());
+    });
     if (report.converged)
       solver.next_method = Method::newton;
   }

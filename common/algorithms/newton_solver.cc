@@ -17,7 +17,7 @@ namespace Friction
     // What is short for a step, and how many such steps lead nowhere, in a row
     // and altogether: where phases go round, short steps alternate with others.
     constexpr double       shortest         = 1. / 64;
-    constexpr unsigned int most_short_steps = 3, most_short_in_all = 5,
+    constexpr unsigned int most_short_steps = 3, most_short_in_all = 12,
                            most_steps = 60;
 
     // What is left of the largest violation may be rounding.

@@ -23,7 +23,9 @@ namespace Friction
    * (Eisenstat and Walker 1996). There is no energy that would decrease. What
    * decides over the length of a step is the violation of the law, the
    * Euclidean norm of all nodal forces that are wrong; steps after the first
-   * are halved until it decreases, six times at most.
+   * are halved until it decreases, six times at most. It is given up after
+   * three steps in a row, or twelve altogether, that had to be halved so often,
+   * and after sixty steps.
    */
   template <int dim>
   class NewtonSolver

@@ -424,9 +424,12 @@ namespace Friction
 
   template <int dim>
   SolverReport
-  SafeguardedSolver<dim>::newton_method(const Search &search)
+  SafeguardedSolver<dim>::newton_method(const Search      &search,
+                                        const unsigned int most_iterations)
   {
-    const CoulombSettings its_settings = later_settings(search.accuracy);
+    CoulombSettings its_settings = later_settings(search.accuracy);
+    its_settings.limits.maximum_cycles =
+      std::min(its_settings.limits.maximum_cycles, most_iterations);
     if (const std::optional<SolverReport> report = condensed_if_cheap(
           search, Condensed::By::newton_solver, its_settings))
       return *report;
@@ -443,9 +446,10 @@ namespace Friction
 
 
   // The guess may be a good one: so it is tried with less and less friction
-  // until Newton's method arrives, and from there the coefficient is doubled
-  // for as long as that works, and multiplied by the square root of the last
-  // factor where it does not.
+  // until Newton's method arrives, each time with half of the iterations that
+  // are left. From there the coefficient is doubled for as long as that works,
+  // and multiplied by the square root of the last factor where it does not. If
+  // that does not lead to the end, either, it begins lower.
   template <int dim>
   SolverReport
   SafeguardedSolver<dim>::continuation(const Search &search, double &solved)
@@ -458,35 +462,47 @@ namespace Friction
     const double           easy            = std::min(.25, target / 2);
     constexpr double       way_down        = 4;
     constexpr double       smallest_factor = 1.05;
+    const VectorType       guess           = search.u;
+    const ContactState     guess_state     = search.state;
     SolverReport           report;
     std::vector<CycleInfo> cycles;
-    solved                   = 0;
-    const auto try_to_arrive = [&](const double coefficient) {
+    const auto             arrives_at = [&](const double       coefficient,
+                                const unsigned int most_iterations) {
       VectorType   next            = search.u;
       ContactState next_state      = search.state;
       problem.friction_coefficient = coefficient;
-      report =
-        newton_method({next, next_state, search.progress, search.accuracy});
+      report                       = newton_method(
+        {next, next_state, search.progress, search.accuracy}, most_iterations);
       cycles.insert(cycles.end(), report.cycles.begin(), report.cycles.end());
       if (report.converged)
         {
-          solved       = coefficient;
+          solved       = std::max(solved, coefficient);
           search.u     = next;
           search.state = next_state;
         }
       return report.converged;
     };
 
-    for (double coefficient = target; coefficient > easy;)
+    solved = 0;
+    for (double first = target;
+         first > easy && solved < target && !budget->is_spent();)
       {
-        coefficient = std::max(easy, coefficient / way_down);
-        if (try_to_arrive(coefficient) || budget->is_spent())
-          break;
+        first        = std::max(easy, first / way_down);
+        search.u     = guess;
+        search.state = guess_state;
+        if (!arrives_at(first, (budget->cycles_left() + 1) / 2))
+          continue;
+        double reached = first;
+        for (double factor = 2; reached < target && factor >= smallest_factor &&
+             !budget->is_spent();)
+          {
+            const double next = std::min(reached * factor, target);
+            if (arrives_at(next, budget->cycles_left()))
+              reached = next;
+            else
+              factor = std::sqrt(next / reached);
+          }
       }
-    for (double factor = 2; solved > 0 && solved < target &&
-         factor >= smallest_factor && !budget->is_spent();)
-      if (!try_to_arrive(std::min(solved * factor, target)))
-        factor = std::sqrt(factor);
     report.converged = report.converged && solved == target;
     report.cycles    = cycles;
     if (!report.converged)

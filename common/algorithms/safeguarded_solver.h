@@ -51,8 +51,9 @@ namespace Friction
    * 6. Newton's method, if it has not been tried yet: where there is much
    *    friction, the law is the trouble. If contact nodes alone take no longer
    *    than some cycles, so does each of its steps;
-   * 7. continuation by the same method: first the problem with less friction,
-   *    and its solution as initial guess for more, until all friction is there;
+   * 7. continuation by the same method: first the problem with so much less
+   *    friction that it arrives, and its solution as initial guess for more,
+   *    until all friction is there;
    * 8. algebraic corrections, if they have not been tried yet;
    * 9. Algorithm 2 with half of each change of the normal forces, and with
    *    mixing, see MixedFixedPoint. Each of its problems, with given normal
@@ -232,7 +233,8 @@ namespace Friction
                                       const CoulombSettings  &its_settings,
                                       const Search           &search);
 
-    SolverReport newton_method(const Search &search);
+    SolverReport newton_method(const Search      &search,
+                               const unsigned int most_iterations);
 
     // @p solved is the largest coefficient with a solution.
     SolverReport continuation(const Search &search, double &solved);

@@ -16,7 +16,9 @@ namespace Friction
     // The root between 0 and 1 of (1-s)^2 a + s (1-s) b + s^2 c, where a is
     // not negative and c not positive: of the two that s/(1-s) has, which have
     // different signs, the positive one, without taking a difference of two
-    // numbers that may be nearly the same.
+    // numbers that may be nearly the same. At the ends a or c is zero, and the
+    // root that is meant is the limit: b is negative for s = 0, and positive
+    // for s = 1, for there the direction is between two corners of that side.
     double
     root_between(const double a, const double b, const double c)
     {

@@ -15,6 +15,8 @@
 #include <fstream>
 #include <iostream>
 #include <numeric>
+#include <set>
+#include <string>
 #include <vector>
 
 #include <tests/support/check.h>
@@ -79,14 +81,16 @@ namespace test_shell_manifold
         std::vector<Point<3>> places, points;
         std::vector<double>   weights;
         const unsigned int    n = 2 + random.below(4);
-        // On a side of the cell, now and then.
-        const unsigned int held  = random.below(6);
-        const double       value = random.below(2);
+        // Often all on a side of the cell, on an edge or in a corner.
+        std::array<unsigned int, 3> end;
+        for (unsigned int &e : end)
+          e = random.below(4);
         for (unsigned int j = 0; j < n; ++j)
           {
             Point<3> p(random(0., 1.), random(0., 1.), random(0., 1.));
-            if (held < 3)
-              p[held] = value;
+            for (unsigned int d = 0; d < 3; ++d)
+              if (end[d] < 2)
+                p[d] = end[d];
             places.push_back(p);
             points.push_back(x(p));
             weights.push_back(random(0., 1.));
@@ -113,12 +117,14 @@ namespace test_shell_manifold
     const auto direction = [](const double x, const double y, const double z) {
       return Tensor<1, 3>({x, y, z});
     };
-    // A quarter of a side of a cube; one whose corners are not in a plane; one
-    // that is a trapezoid, and nearly a triangle.
+    // A quarter of a side of a cube, whose coordinates s, t and r are a right
+    // hand; the same in the other order; one whose corners are not in a plane;
+    // one that is nearly a triangle.
     const Side flat   = {{direction(0., 0., -.5),
-                          direction(.5, 0., -.5),
                           direction(0., .5, -.5),
+                          direction(.5, 0., -.5),
                           direction(.5, .5, -.5)}},
+               left   = {{flat[0], flat[2], flat[1], flat[3]}},
                bent   = {{direction(.1, -.1, -.7),
                           direction(.4, 0., -.3),
                           direction(0., .5, -.6),
@@ -132,11 +138,14 @@ namespace test_shell_manifold
         check_below(error_of_means(flat, 1., r_is_first),
                     1e-14,
                     "means of points of a cell");
+        check_below(error_of_means(left, 1., r_is_first),
+                    1e-14,
+                    "the same, with a left hand");
         check_below(error_of_means(bent, 1., r_is_first),
                     1e-14,
                     "the same, with a bent side");
         check_below(error_of_means(narrow, 1., r_is_first),
-                    1e-14,
+                    1e-13,
                     "the same, with a narrow one");
       }
     Side small = bent;
@@ -149,14 +158,15 @@ namespace test_shell_manifold
 
 
 
-  // Two refinements: vertices on the boundary and in the core are where
-  // deal.II's manifolds have them, and in between they are near to that, in
-  // parts of the radius, where cells are an eighth long.
+  // Two refinements: vertices on the straight sides and edges of coarse cells
+  // and on the sphere are where deal.II has them; others are not far from
+  // there, in parts of the radius. Cells are an eighth long.
   void
   half_ball(const std::string &angle)
   {
     std::ofstream("scene.prm") << "subsection Boundary conditions\n  set "
                                   "Displacement = 1: 0, 0, 0\nend\n";
+    const double     R = 2.;
     const Scene<3>   scene(read_parameters("scene.prm",
                                          {"Scene/Geometry=half ball",
                                             "Scene/Radius=2",
@@ -168,39 +178,66 @@ namespace test_shell_manifold
     TransfiniteInterpolationManifold<3> by_deal_II;
     by_deal_II.initialize(expected);
     expected.set_manifold(1, by_deal_II);
+
+    // Edges of the shell towards the origin, by their ends.
+    std::vector<std::array<Point<3>, 2>> edges;
+    for (const auto &cell : mesh.cell_iterators_on_level(0))
+      for (unsigned int l = 0; l < 12; ++l)
+        {
+          const auto line = cell->line(l);
+          if (line->manifold_id() == 1)
+            edges.push_back({{line->vertex(0), line->vertex(1)}});
+        }
+    const auto is_on_edge = [&](const Point<3> &p) {
+      return std::any_of(edges.begin(), edges.end(), [&](const auto &ends) {
+        return std::abs(p.distance(ends[0]) + p.distance(ends[1]) -
+                        ends[0].distance(ends[1])) < 1e-12;
+      });
+    };
+
     for (Triangulation<3> *triangulation : {&mesh, &expected})
       triangulation->refine_global(2);
-
-    std::vector<bool> is_inside(mesh.n_vertices(), true);
+    std::set<unsigned int> straight, round;
     for (const auto &cell : mesh.active_cell_iterators())
       {
         if (cell->manifold_id() == numbers::flat_manifold_id)
           for (const unsigned int v : cell->vertex_indices())
-            is_inside[cell->vertex_index(v)] = false;
+            straight.insert(cell->vertex_index(v));
         for (const auto &face : cell->face_iterators())
           if (face->at_boundary() && face->boundary_id() == 0)
             for (const unsigned int v : face->vertex_indices())
-              is_inside[face->vertex_index(v)] = false;
+              round.insert(face->vertex_index(v));
       }
-    double inside = 0., others = 0.;
+    enum
+    {
+      on_core,
+      on_sphere,
+      on_edges,
+      inside
+    };
+    std::array<double, 4>       off = {};
+    std::array<unsigned int, 4> n   = {};
     for (unsigned int v = 0; v < mesh.n_vertices(); ++v)
       {
-        const double distance =
-          mesh.get_vertices()[v].distance(expected.get_vertices()[v]) / 2.;
-        (is_inside[v] ? inside : others) =
-          std::max(is_inside[v] ? inside : others, distance);
+        const Point<3>     p    = mesh.get_vertices()[v];
+        const unsigned int kind = (straight.count(v) > 0  ? on_core
+                                     : round.count(v) > 0 ? on_sphere
+                                     : is_on_edge(p)      ? on_edges
+                                                          : inside);
+        ++n[kind];
+        off[kind] =
+          std::max(off[kind], p.distance(expected.get_vertices()[v]) / R);
       }
     std::cout << mesh.n_active_cells() << " cells, found by us "
               << (dynamic_cast<const ShellManifold *>(&mesh.get_manifold(1)) !=
                   nullptr)
-              << ", off in the shell "
-              << (inside > 1e-3     ? "much"
-                    : inside > 1e-9 ? "a little"
-                                    : "no")
-              << std::endl;
-    if (std::getenv("TELL"))
-      std::cout << inside << std::endl;
-    check_below(others, 1e-9, "vertices on the boundary and in the core");
+              << "; vertices in the core " << n[on_core] << ", on the sphere "
+              << n[on_sphere] << ", on edges " << n[on_edges] << ", inside "
+              << n[inside] << std::endl;
+    check_below(off[on_core], 1e-9, "those in the core");
+    check_below(off[on_sphere], 1e-9, "those on the sphere");
+    check_below(off[on_edges], 1e-9, "those on edges");
+    check_below(off[inside], .01, "those inside");
   }
 } // namespace test_shell_manifold
 
