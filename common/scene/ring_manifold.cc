@@ -1,7 +1,7 @@
+#include <common/scene/coarse_cell.h>
 #include <common/scene/ring_manifold.h>
 
 #include <deal.II/base/exceptions.h>
-#include <deal.II/base/geometry_info.h>
 
 #include <algorithm>
 #include <cmath>
@@ -31,27 +31,23 @@ namespace Friction
                              const types::manifold_id ring,
                              const types::manifold_id circle)
   {
-    for (const auto &cell : mesh.cell_iterators_on_level(0))
-      if (cell->manifold_id() == ring)
-        for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->manifold_id() == circle)
-            {
-              // Faces 2k and 2k+1 are opposite to each other, and have their
-              // vertices in the same order.
-              Cell c;
-              for (unsigned int v = 0; v < 2; ++v)
-                {
-                  using Info = GeometryInfo<2>;
-                  c.outer[v] = cell->vertex(Info::face_to_cell_vertices(f, v));
-                  c.inner[v] =
-                    cell->vertex(Info::face_to_cell_vertices(f ^ 1, v));
-                }
-              c.radius      = c.outer[0].norm();
-              c.first_angle = std::atan2(c.outer[0][1], c.outer[0][0]);
-              c.angle       = std::atan2(cross_product(c.outer[0], c.outer[1]),
-                                   c.outer[0] * c.outer[1]);
-              cells.push_back(c);
-            }
+    CoarseCell::for_each_between(
+      mesh,
+      ring,
+      circle,
+      [&](const CoarseCell::Side<2> &inner, const CoarseCell::Side<2> &outer) {
+        Cell c;
+        for (unsigned int v = 0; v < 2; ++v)
+          {
+            c.outer[v] = outer[v];
+            c.inner[v] = inner[v];
+          }
+        c.radius      = c.outer[0].norm();
+        c.first_angle = std::atan2(c.outer[0][1], c.outer[0][0]);
+        c.angle       = std::atan2(cross_product(c.outer[0], c.outer[1]),
+                             c.outer[0] * c.outer[1]);
+        cells.push_back(c);
+      });
     Assert(!cells.empty(), ExcMessage("There is no ring."));
   }
 
@@ -69,28 +65,8 @@ namespace Friction
   RingManifold::get_new_point(const ArrayView<const Point<2>> &points,
                               const ArrayView<const double>   &weights) const
   {
-    // Cells are convex, and what is in the middle of some points of a cell is
-    // in this cell, or on one of its sides if all of them are.
-    Point<2> middle;
-    for (const Point<2> &p : points)
-      middle += p / double(points.size());
-    const Cell *cell    = nullptr;
-    double      outside = 0.;
-    for (const Cell &candidate : cells)
-      {
-        const double distance = candidate.outside(middle);
-        if (cell == nullptr || distance < outside)
-          {
-            cell    = &candidate;
-            outside = distance;
-          }
-      }
-
-    Point<2> mean;
-    for (unsigned int i = 0; i < points.size(); ++i)
-      mean += weights[i] * cell->pull_back(points[i]);
-    return (1. - mean[1]) * cell->at_inner(mean[0]) +
-      mean[1] * cell->at_circle(mean[0]);
+    // Cells are convex.
+    return CoarseCell::mean(cells, points, weights);
   }
 
 
@@ -108,6 +84,15 @@ namespace Friction
   {
     const double a = first_angle + s * angle;
     return {radius * std::cos(a), radius * std::sin(a)};
+  }
+
+
+
+  Point<2>
+  RingManifold::Cell::push_forward(const Point<2> &place) const
+  {
+    return (1. - place[1]) * at_inner(place[0]) +
+      place[1] * at_circle(place[0]);
   }
 
 

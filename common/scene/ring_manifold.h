@@ -58,6 +58,9 @@ namespace Friction
       /** The point of the circle at @p s. */
       Point<2> at_circle(const double s) const;
 
+      /** The point x(s, t). */
+      Point<2> push_forward(const Point<2> &place) const;
+
       /** Positive if @p p is outside of one of the straight sides, negative if
        * it is inside of all three: the largest of its distances from them, each
        * times the length of the side. */

@@ -1,7 +1,7 @@
+#include <common/scene/coarse_cell.h>
 #include <common/scene/shell_manifold.h>
 
 #include <deal.II/base/exceptions.h>
-#include <deal.II/base/geometry_info.h>
 
 #include <algorithm>
 #include <cmath>
@@ -34,29 +34,22 @@ namespace Friction
                                const types::manifold_id shell,
                                const types::manifold_id sphere)
   {
-    for (const auto &cell : mesh.cell_iterators_on_level(0))
-      if (cell->manifold_id() == shell)
-        for (const unsigned int f : cell->face_indices())
-          if (cell->face(f)->manifold_id() == sphere)
-            {
-              // Faces 2k and 2k+1 are opposite to each other, and have their
-              // vertices in the same order.
-              std::array<Tensor<1, 3>, 4> corners;
-              for (unsigned int v = 0; v < 4; ++v)
-                {
-                  using Info           = GeometryInfo<3>;
-                  const Point<3> outer = cell->vertex(
-                                   Info::face_to_cell_vertices(f, v)),
-                                 inner = cell->vertex(
-                                   Info::face_to_cell_vertices(f ^ 1, v));
-                  radius     = outer.norm();
-                  corners[v] = inner / radius;
-                  Assert(cross_product_3d(inner, outer).norm() <=
-                           rounding_outside * inner.norm() * radius,
-                         ExcMessage("An edge does not point to the origin."));
-                }
-              cells.emplace_back(corners);
-            }
+    CoarseCell::for_each_between(
+      mesh,
+      shell,
+      sphere,
+      [&](const CoarseCell::Side<3> &inner, const CoarseCell::Side<3> &outer) {
+        const double                radius = outer[0].norm();
+        std::array<Tensor<1, 3>, 4> corners;
+        for (unsigned int v = 0; v < 4; ++v)
+          {
+            corners[v] = inner[v] / radius;
+            Assert(cross_product_3d(inner[v], outer[v]).norm() <=
+                     rounding_outside * inner[v].norm() * radius,
+                   ExcMessage("An edge does not point to the origin."));
+          }
+        cells.emplace_back(corners, radius);
+      });
     Assert(!cells.empty(), ExcMessage("There is no shell."));
   }
 
@@ -74,36 +67,16 @@ namespace Friction
   ShellManifold::get_new_point(const ArrayView<const Point<3>> &points,
                                const ArrayView<const double>   &weights) const
   {
-    // The sides of cells are in planes through the origin, so that what is in
-    // the middle of some points of a cell is in this cell, or on one of its
-    // sides if all of them are.
-    Tensor<1, 3> middle;
-    for (const Point<3> &p : points)
-      middle += p / (radius * points.size());
-    const Cell *cell    = nullptr;
-    double      outside = 0.;
-    for (const Cell &candidate : cells)
-      {
-        const double distance = candidate.outside(middle);
-        if (cell == nullptr || distance < outside)
-          {
-            cell    = &candidate;
-            outside = distance;
-          }
-      }
-
-    Tensor<1, 3> mean;
-    for (unsigned int i = 0; i < points.size(); ++i)
-      mean += weights[i] * cell->pull_back(points[i] / radius);
-    const Tensor<1, 3> on_side = cell->at_side(mean[0], mean[1]);
-    return Point<3>(radius * (1. - mean[2] + mean[2] / on_side.norm()) *
-                    on_side);
+    // The sides of cells are in planes through the origin.
+    return CoarseCell::mean(cells, points, weights);
   }
 
 
 
-  ShellManifold::Cell::Cell(const std::array<Tensor<1, 3>, 4> &corners)
+  ShellManifold::Cell::Cell(const std::array<Tensor<1, 3>, 4> &corners,
+                            const double                       radius)
     : corners(corners)
+    , radius(radius)
   {
     for (unsigned int d = 0; d < 2; ++d)
       {
@@ -146,18 +119,29 @@ namespace Friction
 
 
 
-  Tensor<1, 3>
-  ShellManifold::Cell::pull_back(const Tensor<1, 3> &p) const
+  Point<3>
+  ShellManifold::Cell::push_forward(const Point<3> &place) const
   {
-    Assert(outside(p) <= rounding_outside,
+    const Tensor<1, 3> on_side = at_side(place[0], place[1]);
+    return Point<3>(radius * (1. - place[2] + place[2] / on_side.norm()) *
+                    on_side);
+  }
+
+
+
+  Point<3>
+  ShellManifold::Cell::pull_back(const Point<3> &p) const
+  {
+    const Tensor<1, 3> scaled = p / radius;
+    Assert(outside(scaled) <= rounding_outside,
            ExcMessage("A point is not in its cell."));
-    Tensor<1, 3> place;
+    Point<3> place;
     for (unsigned int d = 0; d < 2; ++d)
-      place[d] = root_between(std::max(0., p * normals[d][0]),
-                              p * normals[d][1],
-                              std::min(0., p * normals[d][2]));
+      place[d] = root_between(std::max(0., scaled * normals[d][0]),
+                              scaled * normals[d][1],
+                              std::min(0., scaled * normals[d][2]));
     const double inner = at_side(place[0], place[1]).norm();
-    place[2]           = (p.norm() - inner) / (1. - inner);
+    place[2]           = (scaled.norm() - inner) / (1. - inner);
     return place;
   }
 } // namespace Friction

@@ -45,10 +45,11 @@ namespace Friction
                   const ArrayView<const double>   &weights) const override;
 
   private:
-    /** A coarse cell, with lengths in parts of the radius. */
+    /** A coarse cell. */
     struct Cell
     {
-      /** Of the straight side, lexicographically in s and t. */
+      /** Of the straight side, lexicographically in s and t, in parts of the
+       * radius. */
       std::array<Tensor<1, 3>, 4> corners;
 
       /** A direction d belongs to a place whose coordinate s, for one, is the
@@ -57,7 +58,9 @@ namespace Friction
        * with these vectors n: then d, c(s, 0) and c(s, 1) are in a plane. */
       std::array<std::array<Tensor<1, 3>, 3>, 2> normals;
 
-      explicit Cell(const std::array<Tensor<1, 3>, 4> &corners);
+      double radius;
+
+      Cell(const std::array<Tensor<1, 3>, 4> &corners, const double radius);
 
       /** The point c of the straight side. */
       Tensor<1, 3> at_side(const double s, const double t) const;
@@ -65,11 +68,13 @@ namespace Friction
       /** Positive if a direction is outside of the cell. */
       double outside(const Tensor<1, 3> &direction) const;
 
+      /** The point x(s, t, r). */
+      Point<3> push_forward(const Point<3> &place) const;
+
       /** Where x(s, t, r) is @p p. */
-      Tensor<1, 3> pull_back(const Tensor<1, 3> &p) const;
+      Point<3> pull_back(const Point<3> &p) const;
     };
 
-    double            radius = 0.;
     std::vector<Cell> cells;
   };
 } // namespace Friction

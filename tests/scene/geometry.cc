@@ -19,12 +19,11 @@
 #include <array>
 #include <fstream>
 #include <iostream>
-#include <numeric>
 #include <set>
 #include <type_traits>
 
 #include <tests/support/check.h>
-#include <tests/support/random.h>
+#include <tests/support/means_in_cell.h>
 #include <tests/support/test.h>
 
 using namespace dealii;
@@ -273,38 +272,14 @@ namespace test_geometry
                 const std::array<double, 2>   &degrees,
                 const std::string             &what)
   {
-    const auto x = [&](const double s, const double t) {
+    const auto x = [&](const Point<2> &place) {
+      const double s = place[0], t = place[1];
       const double angle =
         (degrees[0] + s * (degrees[1] - degrees[0])) * numbers::PI / 180.;
       return (1. - t) * (inner[0] + s * (inner[1] - inner[0])) +
         t * Point<2>(std::cos(angle), std::sin(angle));
     };
-    Random random(1);
-    double largest = 0.;
-    for (unsigned int i = 0; i < 100; ++i)
-      {
-        std::vector<Point<2>> places, points;
-        std::vector<double>   weights;
-        const unsigned int    n = 2 + random.below(4);
-        for (unsigned int j = 0; j < n; ++j)
-          {
-            const Point<2> p(random(0., 1.), random(0., 1.));
-            points.push_back(x(p[0], p[1]));
-            weights.push_back(random(0., 1.));
-            places.push_back(p);
-          }
-        const double sum = std::accumulate(weights.begin(), weights.end(), 0.);
-        Point<2>     mean;
-        for (unsigned int j = 0; j < n; ++j)
-          {
-            weights[j] /= sum;
-            mean += weights[j] * places[j];
-          }
-        const Point<2> found = manifold.get_new_point(make_array_view(points),
-                                                      make_array_view(weights));
-        largest = std::max(largest, found.distance(x(mean[0], mean[1])));
-      }
-    check_below(largest, 1e-14, what);
+    check_below(error_of_means(manifold, x), 1e-14, what);
   }
 
 

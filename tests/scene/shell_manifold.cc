@@ -14,13 +14,12 @@
 #include <cmath>
 #include <fstream>
 #include <iostream>
-#include <numeric>
 #include <set>
 #include <string>
 #include <vector>
 
 #include <tests/support/check.h>
-#include <tests/support/random.h>
+#include <tests/support/means_in_cell.h>
 #include <tests/support/test.h>
 
 using namespace dealii;
@@ -60,7 +59,7 @@ namespace test_shell_manifold
   // A new point is where the weighted mean of others is, in the coordinates of
   // the cell.
   double
-  error_of_means(const Side &side, const double radius, const bool r_is_first)
+  error_in_cell(const Side &side, const double radius, const bool r_is_first)
   {
     Triangulation<3> mesh;
     make_cell(side, radius, r_is_first, mesh);
@@ -74,39 +73,7 @@ namespace test_shell_manifold
       return Point<3>(((1. - r) * c.norm() + r * radius) / c.norm() * c);
     };
 
-    Random random(1);
-    double largest = 0.;
-    for (unsigned int i = 0; i < 200; ++i)
-      {
-        std::vector<Point<3>> places, points;
-        std::vector<double>   weights;
-        const unsigned int    n = 2 + random.below(4);
-        // Often all on a side of the cell, on an edge or in a corner.
-        std::array<unsigned int, 3> end;
-        for (unsigned int &e : end)
-          e = random.below(4);
-        for (unsigned int j = 0; j < n; ++j)
-          {
-            Point<3> p(random(0., 1.), random(0., 1.), random(0., 1.));
-            for (unsigned int d = 0; d < 3; ++d)
-              if (end[d] < 2)
-                p[d] = end[d];
-            places.push_back(p);
-            points.push_back(x(p));
-            weights.push_back(random(0., 1.));
-          }
-        const double sum = std::accumulate(weights.begin(), weights.end(), 0.);
-        Point<3>     mean;
-        for (unsigned int j = 0; j < n; ++j)
-          {
-            weights[j] /= sum;
-            mean += weights[j] * places[j];
-          }
-        const Point<3> found = manifold.get_new_point(make_array_view(points),
-                                                      make_array_view(weights));
-        largest = std::max(largest, found.distance(x(mean)) / radius);
-      }
-    return largest;
+    return error_of_means(manifold, x) / radius;
   }
 
 
@@ -135,23 +102,19 @@ namespace test_shell_manifold
                           direction(.01, .4, -.5)}};
     for (const bool r_is_first : {false, true})
       {
-        check_below(error_of_means(flat, 1., r_is_first),
-                    1e-14,
-                    "means of points of a cell");
-        check_below(error_of_means(left, 1., r_is_first),
-                    1e-14,
-                    "the same, with a left hand");
-        check_below(error_of_means(bent, 1., r_is_first),
-                    1e-14,
-                    "the same, with a bent side");
-        check_below(error_of_means(narrow, 1., r_is_first),
-                    1e-13,
-                    "the same, with a narrow one");
+        const auto check =
+          [&](const Side &side, const double limit, const std::string &what) {
+            check_below(error_in_cell(side, 1., r_is_first), limit, what);
+          };
+        check(flat, 1e-14, "means of points of a cell");
+        check(left, 1e-14, "the same, with a left hand");
+        check(bent, 1e-14, "the same, with a bent side");
+        check(narrow, 1e-13, "the same, with a narrow one");
       }
     Side small = bent;
     for (Tensor<1, 3> &p : small)
       p *= 1e-30;
-    check_below(error_of_means(small, 1e-30, false),
+    check_below(error_in_cell(small, 1e-30, false),
                 1e-14,
                 "the same, where all is small");
   }
