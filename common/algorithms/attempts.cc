@@ -1,6 +1,7 @@
 #include <common/algorithms/attempts.h>
 #include <common/parallel/phase_costs.h>
 
+#include <optional>
 #include <sstream>
 
 namespace Friction
@@ -238,8 +239,30 @@ namespace Friction
 
   template <int dim>
   void
+  SafeguardedSolver<dim>::Attempts::try_pivoting(const bool others_have_failed)
+  {
+    if (!solver.pivoting_is_possible(search, others_have_failed) ||
+        !begin(is_pivoted))
+      return;
+    start_anew();
+    const std::optional<SolverReport> result = solver.pivoting(search);
+    if (!result)
+      return;
+    attempt(std::string("complementary pivoting") + on_contact_nodes,
+            [&]() { return *result; });
+    if (report.converged)
+      solver.next_method = Method::newton;
+  }
+
+
+
+  // Where that is cheap, pivoting is the better way to solve with all of the
+  // law, and the way out where Newton's method fails.
+  template <int dim>
+  void
   SafeguardedSolver<dim>::Attempts::try_newton()
   {
+    try_pivoting(/*others_have_failed =*/false);
     if (!begin(is_newton))
       return;
     start_anew();
@@ -248,6 +271,7 @@ namespace Friction
     });
     if (report.converged)
       solver.next_method = Method::newton;
+    try_pivoting(/*others_have_failed =*/true);
   }
 
 

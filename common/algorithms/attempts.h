@@ -41,8 +41,8 @@ namespace Friction
 
     // What has been tried.
     bool is_condensed = false, is_aggregate = false, is_algebraic = false,
-         is_newton = false, is_continued = false, is_mixed = false,
-         has_gone_on = false;
+         is_pivoted = false, is_newton = false, is_continued = false,
+         is_mixed = false, has_gone_on = false;
 
     // Whether there is anything left to do and to try it with. Notes that it is
     // being tried, and opens its share of the budget.
@@ -66,6 +66,7 @@ namespace Friction
     void try_contact_nodes_alone();
     void try_aggregates();
     void try_algebraic_corrections();
+    void try_pivoting(const bool others_have_failed);
     void try_newton();
     void try_continuation(const bool is_last);
     void try_mixed_algorithm_2(const bool is_last);

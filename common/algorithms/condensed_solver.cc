@@ -1,5 +1,6 @@
 #include <common/algorithms/condensed_solver.h>
 #include <common/algorithms/newton_finish.h>
+#include <common/algorithms/pivoting_solver.h>
 #include <common/iteration/dense_correction.h>
 #include <common/iteration/dense_newton_step.h>
 #include <common/parallel/reductions.h>
@@ -94,7 +95,7 @@ namespace Friction
 
 
 
-  // What solves it, by either method.
+  // What solves it, by any method.
   template <int dim>
   struct CondensedSolver<dim>::SmallSolver
   {
@@ -132,6 +133,11 @@ namespace Friction
           const CoulombSettings &limits,
           const Progress        &progress)
     {
+      Assert(dim == 2 || method != By::pivoting,
+             ExcMessage("Phases in space are no straight ones."));
+      if constexpr (dim == 2)
+        if (method == By::pivoting)
+          return solve_by_pivoting(newton, u, state, limits, progress);
       if (method == By::newton_solver)
         return solve_by_newton(newton, u, state, limits, progress);
       if (!may_finish)

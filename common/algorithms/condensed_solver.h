@@ -32,7 +32,8 @@ namespace Friction
    * the matrix is factorised once more.
    *
    * Where the laws themselves are the trouble, Newton's method solves the same
-   * small problem, see NewtonSolver and DenseNewtonStep.
+   * small problem, see NewtonSolver and DenseNewtonStep, or in two dimensions
+   * complementary pivoting, see solve_by_pivoting().
    *
    * All processes have the whole matrix and factorise it; the first one solves
    * for all of them.
@@ -42,7 +43,7 @@ namespace Friction
   {
   public:
     /// Cycles beyond which it is never worth while.
-    static constexpr double most_cycles = 400.;
+    static constexpr double most_cycles = (dim == 2 ? 800. : 400.);
 
     /**
      * Collective.
@@ -86,13 +87,14 @@ namespace Friction
     enum class By
     {
       coulomb_solver,
-      newton_solver
+      newton_solver,
+      pivoting ///< in two dimensions
     };
 
     /**
      * As CoulombSolver::solve(); collective. The cycles that are reported are
      * those of the condensed problem, which cost next to nothing, or steps of
-     * Newton's method.
+     * Newton's method, or what takes as long.
      * @param functional  of the problem.
      */
     SolverReport solve(const TrescaFunctional<dim> &functional,

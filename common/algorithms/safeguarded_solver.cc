@@ -43,6 +43,12 @@ namespace Friction
     // which a cycle takes as long as several.
     constexpr double cycles_of_newton = 36, cycles_of_aggregates = 60;
 
+    // Where pivoting would be, which arrives for certain.
+    constexpr double cycles_of_pivoting = 100;
+
+    // And where others have failed.
+    constexpr double most_cycles_alone = 400;
+
 
 
     // Newton's method takes over once phases have settled if Algorithm 3 would
@@ -206,7 +212,7 @@ namespace Friction
       return false;
     const bool aggregates_are_left = others_have_failed &&
       !aggregates_have_failed && coarse_cells_may_be_to_blame();
-    double n_cycles = Condensed::most_cycles;
+    double n_cycles = most_cycles_alone;
     if (!others_have_failed || aggregates_are_left)
       {
         n_cycles = std::min(n_cycles,
@@ -418,6 +424,32 @@ namespace Friction
              [this]() -> NewtonSolver<dim> & { return newton_with_levels(); },
              longest_end)
       .solve(search.u, search.state, its_settings, search.progress);
+  }
+
+
+
+  template <int dim>
+  bool
+  SafeguardedSolver<dim>::pivoting_is_possible(const Search &search,
+                                               const bool    others_have_failed)
+  {
+    return dim == 2 && problem.has_coulomb_friction() && may_condense() &&
+      contact_nodes_alone_take_less(search,
+                                    others_have_failed ? Condensed::most_cycles
+                                                       : cycles_of_pivoting);
+  }
+
+
+
+  template <int dim>
+  std::optional<SolverReport>
+  SafeguardedSolver<dim>::pivoting(const Search &search)
+  {
+    const SolverReport report = solve_condensed(
+      search, Condensed::By::pivoting, later_settings(search.accuracy));
+    if (condensed->has_given_up())
+      return {};
+    return report;
   }
 
 

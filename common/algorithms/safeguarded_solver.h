@@ -233,6 +233,13 @@ namespace Friction
                                       const CoulombSettings  &its_settings,
                                       const Search           &search);
 
+    // In two dimensions, on contact nodes alone.
+    bool pivoting_is_possible(const Search &search,
+                              const bool    others_have_failed);
+
+    // None if the zone became too large.
+    std::optional<SolverReport> pivoting(const Search &search);
+
     SolverReport newton_method(const Search      &search,
                                const unsigned int most_iterations);
 

@@ -1,0 +1,121 @@
+#include <common/algorithms/basis_inverse.h>
+#include <common/nodes/dense_kernels.h>
+
+#include <algorithm>
+
+namespace Friction
+{
+  namespace
+  {
+    // Squares on the diagonal of Cholesky's factor, as parts of the largest
+    // one, that betray a singular matrix.
+    constexpr double singular = 1e-13;
+  } // namespace
+
+
+
+  bool
+  BasisInverse::factorize(const std::vector<double> &S,
+                          const std::vector<char>   &is_unit)
+  {
+    matrix = &S;
+    columns.clear();
+    units.clear();
+    changes.clear();
+    const std::size_t n = is_unit.size();
+    for (unsigned int k = 0; k < n; ++k)
+      (is_unit[k] ? units : columns).push_back(k);
+    const std::size_t m = columns.size();
+    factor.resize(m * m);
+    for (std::size_t j = 0; j < m; ++j)
+      for (std::size_t i = 0; i < m; ++i)
+        factor[j * m + i] = S[columns[j] * n + columns[i]];
+    if (m > 0 && !DenseKernels::eliminate(factor.data(), m, m))
+      return false;
+    n_products += m * m * m / 6.;
+
+    double smallest = 1, largest = 1;
+    for (std::size_t k = 0; k < m; ++k)
+      {
+        const double square = factor[k * m + k] * factor[k * m + k];
+        smallest            = k == 0 ? square : std::min(smallest, square);
+        largest             = k == 0 ? square : std::max(largest, square);
+      }
+    return smallest > singular * largest;
+  }
+
+
+
+  void
+  BasisInverse::apply(std::vector<double> &x) const
+  {
+    const std::size_t n = x.size(), m = columns.size();
+    room.resize(m);
+    double *const y = room.data();
+    for (std::size_t k = 0; k < m; ++k)
+      y[k] = x[columns[k]];
+    for (std::size_t k = 0; k < m; ++k)
+      {
+        const double *const L     = &factor[k * m];
+        const double        value = y[k] /= L[k];
+        for (std::size_t i = k + 1; i < m && value != 0; ++i)
+          y[i] -= L[i] * value;
+      }
+    for (std::size_t k = m; k-- > 0;)
+      {
+        const double *const L      = &factor[k * m];
+        double              sum[4] = {0, 0, 0, 0};
+        std::size_t         i      = k + 1;
+        for (; i + 4 <= m; i += 4)
+          for (unsigned int l = 0; l < 4; ++l)
+            sum[l] += L[i + l] * y[i + l];
+        for (; i < m; ++i)
+          sum[0] += L[i] * y[i];
+        y[k] = (y[k] - (sum[0] + sum[1]) - (sum[2] + sum[3])) / L[k];
+      }
+    for (std::size_t k = 0; k < m; ++k)
+      {
+        const double *const S     = &(*matrix)[columns[k] * n];
+        const double        value = y[k];
+        for (const unsigned int i : units)
+          x[i] -= S[i] * value;
+        x[columns[k]] = value;
+      }
+    n_products += m * n;
+
+    for (const Change &change : changes)
+      {
+        if (change.image.empty())
+          {
+            x[change.position] += change.factor * x[change.from];
+            continue;
+          }
+        const double value = x[change.position] / change.factor;
+        if (value == 0)
+          continue;
+        for (std::size_t i = 0; i < n; ++i)
+          x[i] -= change.image[i] * value;
+        x[change.position] = value;
+        n_products += n;
+      }
+  }
+
+
+
+  void
+  BasisInverse::exchange(const unsigned int         position,
+                         const std::vector<double> &image)
+  {
+    changes.push_back({position, position, image[position], image});
+  }
+
+
+
+  void
+  BasisInverse::add_row(const unsigned int to,
+                        const unsigned int from,
+                        const double       factor)
+  {
+    changes.push_back({to, from, factor, {}});
+  }
+} // namespace Friction
