@@ -16,7 +16,8 @@ namespace Friction
     // at least, as a part of the largest of them.
     constexpr double margin = 1e-4;
 
-    // By what part of themselves they are changed at random.
+    // By what part of themselves they are changed at random, so that problems
+    // with a symmetry lose it.
     constexpr double disorder = 1;
 
 

@@ -16,40 +16,46 @@ namespace Friction
    * of CondensedSolver.
    *
    * In the plane a node has four phases: open, sticking, sliding one way and
-   * sliding the other way. In each of them two of its components are known, of
-   * displacement or force, and two have to be found, so that for given phases
-   * of all nodes there are as many linear equations as unknowns. Loads
-   * $(1-t)f_0+tf$, where the problem with $f_0$ has a solution that is known,
-   * then lead from it along a broken line: as t grows, all unknowns change in
-   * proportion, until the first one is at the end of what its phase allows: a
-   * gap closes, a pressure vanishes, a slip comes to rest, or friction is at
-   * its bound. There one node goes into its next phase, and the unknown that
-   * becomes free there is increased next, whichever way t goes then. So a path
-   * can turn where a solution ceases to exist, as an iteration with steps of
-   * its own, or less friction at first, cannot. With t=1 it has arrived.
+   * sliding the other way. In each of them two relations between its
+   * displacement and its force are known, so that for given phases of all nodes
+   * there are as many linear equations as unknowns. With loads $(1-t)f_0+tf$,
+   * where a solution for $f_0$ is known, a path leads on from there: as t
+   * grows, all unknowns change in proportion, until the first one is at the end
+   * of what its phase allows: a gap closes, a pressure vanishes, a slip comes
+   * to rest, or friction is at its bound. There one node goes into its next
+   * phase, and the unknown that becomes free in it is increased next, whichever
+   * way t goes then. So a path can turn where a solution ceases to exist for
+   * more load. At t=1 it has arrived.
    *
-   * It does arrive, since no other solution has the load of the start
-   * $u_0,r_0$: there nodes that touch stick, with any normal and no tangential
-   * force, and others have slipped no more than their distance divided by F.
-   * For if $u,r$ has the same load,
-   * @f[ (r-r_0)^TS^{-1}(r-r_0) = -(r-r_0)\cdot(u-u_0), @f]
-   * and no node has a part in the right hand side that is positive. Normal
-   * components have not, because contact is monotone. With $r_{0,T}=0$ the
-   * tangential ones give $-r_T(u_T-u_{0,T})\le-F r_n(|u_T|-|u_{0,T}|)$, where
-   * $u_{0,T}$ vanishes or, times F, is at most the distance $g-u_{0,n}$, by
-   * which $r_n$ is multiplied in the normal part. Hence $r=r_0$. So the path
-   * cannot come back to t=0. By the same equation all solutions with loads
-   * between are bounded, whatever F is. A path that neither ends nor comes
-   * back, in a bounded set where it has but finitely many pieces, gets to t=1;
-   * unless two nodes change phases at once, or the body is held by friction
-   * alone, so that S is singular. This also proves that there is a solution.
+   * It does arrive, for any F, since the load of the start has no other
+   * solution. At the start, $u_0,r_0$, nodes that touch stick, with any normal
+   * force $r_{0,n}\ge0$ and no tangential one, and others have slipped by
+   * $v_0$, $F|v_0|\le g-u_{0,n}$. If $u,r$ solves the problem with the same
+   * load,
+   * @f[ (r-r_0)^TS^{-1}(r-r_0) = -(r-r_0)\cdot(u-u_0). @f]
+   * With the slip v of u, $r_Tv=F r_n|v|$, and $r_n(u_n-g)=0$, a node adds to
+   * the right hand side
+   * - $r_{0,n}(u_n-g)-F r_n|v|$ if it touches at the start,
+   * - $-r_n(g-u_{0,n})-F r_n|v|+r_Tv_0$ if it does not,
    *
-   * How many changes of phase that takes nothing is known of. If the start has
-   * the contact zone of a good guess, they are about as many as there are
-   * nodes, most of which have to be told how they slip.
+   * neither of which is positive, since $|r_T|\le F r_n$. (If its bound is
+   * given, it sticks at the start without a tangential force, and adds
+   * $-|r_Tv|$.) Hence $r=r_0$, and the path cannot come back to t=0. The same
+   * equation bounds all solutions with loads between, so that there are
+   * finitely many pieces which the path may consist of. As it goes through none
+   * of them twice, it gets to t=1; unless two nodes change phases at once, or S
+   * is singular, since nothing but contact holds the body. In symmetric
+   * problems two nodes would: distances and normal forces of the start are
+   * multiplied by random numbers. It follows that there is a solution, and,
+   * nearly always, that their number is odd.
    *
-   * A change of phase exchanges one column of the matrix, whose inverse is
-   * updated with two n^2 multiplications; the first inverse takes n^3.
+   * How many changes of phase there are, nothing is known of. From the contact
+   * zone of a good guess they have been fewer than there are nodes, of which
+   * most have to be told how they slip.
+   *
+   * Each of them exchanges a column of the matrix, see BasisInverse, and takes
+   * some $n^2$ multiplications; the factorisation at the beginning takes
+   * $n^3/6$ at most.
    */
   class PhasePath
   {
@@ -84,7 +90,7 @@ namespace Friction
               const std::vector<Node>   &nodes);
 
     /**
-     * The path begins near a guess.
+     * The path begins with the contact zone of a guess.
      * @param touches       of each node, whether it does.
      * @param displacement  n of them, from which distances are taken.
      * @param force         n forces of the body on the obstacle, from which

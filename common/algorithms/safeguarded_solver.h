@@ -48,9 +48,12 @@ namespace Friction
    * 5. the algorithm of the settings with AlgebraicCorrection, where there is
    *    not much friction: then coarse levels are the trouble, for example
    *    because cells are short in two of three directions;
-   * 6. Newton's method, if it has not been tried yet: where there is much
-   *    friction, the law is the trouble. If contact nodes alone take no longer
-   *    than some cycles, so does each of its steps;
+   * 6. where there is much friction, the law is the trouble. In two dimensions,
+   *    on contact nodes alone, complementary pivoting, see PhasePath, if that
+   *    takes no longer than a hundred cycles. Then Newton's method, if it has
+   *    not been tried yet; if contact nodes alone take no longer than some
+   *    cycles, so does each of its steps. Where it fails, pivoting, if it takes
+   *    no longer than some hundreds;
    * 7. continuation by the same method: first the problem with so much less
    *    friction that it arrives, and its solution as initial guess for more,
    *    until all friction is there;
@@ -63,9 +66,9 @@ namespace Friction
    * if displacements are prescribed that leave the body no rigid motion, and
    * some admissible displacement has no tangential part at the contact nodes:
    * then the map of normal forces to those of the solution with these
-   * forces given is continuous and bounded, and Brouwer's theorem applies. But
-   * it may have several, and a solution that is not found is reported as what
-   * it is, by SolverReport::converged.
+   * forces given is continuous and bounded, and Brouwer's theorem applies. In
+   * two dimensions pivoting finds one. But there may be several, and a solution
+   * that is not found is reported as what it is, by SolverReport::converged.
    *
    * All attempts of all calls of solve() together take
    * SolverSettings::total_cycles cycles at most, but for one in each of them,

@@ -14,7 +14,7 @@ namespace Friction
   enum class Method : unsigned int
   {
     algorithm,    ///< that of the settings
-    newton,       ///< NewtonSolver
+    newton,       ///< NewtonSolver, or pivoting
     algebraic,    ///< that of the settings with AlgebraicCorrection
     aggregates,   ///< that of the settings with AggregateCorrection
     contact_nodes ///< that of the settings on contact nodes alone

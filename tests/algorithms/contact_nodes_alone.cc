@@ -1,11 +1,12 @@
-// CondensedSolver, which has CoulombSolver or Newton's method for the condensed
-// problem, against CoulombSolver with corrections from the whole matrix, which
-// shares the relaxation but neither matrix nor factors: the same displacements,
-// normal forces and phases, for all laws of friction, on curved bodies and
-// meshes with hanging nodes, on any number of processes; the second call has
-// nothing left to do. Histories and platens come out the same with and without
-// it. Where it knows that coarse levels will not do, SafeguardedSolver begins
-// with it; and on small meshes, where no levels are made then.
+// CondensedSolver, which has CoulombSolver, Newton's method or, in two
+// dimensions, complementary pivoting for the condensed problem, against
+// CoulombSolver with corrections from the whole matrix, which shares the
+// relaxation but neither matrix nor factors: the same displacements, normal
+// forces and phases, for all laws of friction, on curved bodies and meshes with
+// hanging nodes, on any number of processes; the second call has nothing left
+// to do. Histories and platens come out the same with and without it. Where it
+// knows that coarse levels will not do, SafeguardedSolver begins with it; and
+// on small meshes, where no levels are made then.
 //
 // The guess of a long block touches nowhere: of its contact nodes a few are
 // kept, and more and more of them until all that touch are, with the same
@@ -67,19 +68,23 @@ namespace test_contact_nodes_alone
       settings,
       Iterate(guess, guess_state));
     check_everywhere(condensed.is_worthwhile(24.), "  the body is small");
-    for (const std::string by : {"", "Newton's method", "Algorithm 2"})
+    for (const std::string by :
+         {"", "Newton's method", "Algorithm 2", "pivoting"})
       {
+        if (dim == 3 && by == "pivoting")
+          continue;
         CoulombSettings its_limits(limits);
         if (by == "Algorithm 2")
           {
             its_limits.algorithm       = Algorithm::fixed_point;
             its_limits.outer_tolerance = 1e-11;
           }
-        const By method =
-          by == "Newton's method" ? By::newton_solver : By::coulomb_solver;
-        VectorType   v     = start;
-        ContactState other = start_state;
-        const auto   solve = [&]() {
+        const By     method = by == "pivoting" ? By::pivoting
+              : by == "Newton's method"        ? By::newton_solver
+                                               : By::coulomb_solver;
+        VectorType   v      = start;
+        ContactState other  = start_state;
+        const auto   solve  = [&]() {
           return condensed.solve(
             functional,
             Iterate(v, other, problem.has_coulomb_friction()),
@@ -105,8 +110,11 @@ namespace test_contact_nodes_alone
         check_everywhere(relative_distance_of_forces(other, state) <= 1e-6,
                          "  and normal forces");
 
-        const VectorType before = v;
-        check_everywhere(solve().cycles.size() <= 2, "  nothing is left to do");
+        // Pivoting begins with phases of its own.
+        const VectorType   before  = v;
+        const unsigned int n_again = solve().cycles.size();
+        if (method != By::pivoting)
+          check_everywhere(n_again <= 2, "  nothing is left to do");
         check_everywhere(relative_distance(v, before) < 1e-8,
                          "  and nothing is done");
       }

@@ -253,8 +253,8 @@ namespace test_phase_path
 
 
 
-  // From a random start; the difference to the nearest of the solutions,
-  // infinite if it does not arrive.
+  // From a random start; the difference to the nearest of the solutions, as a
+  // part of it, infinite if it does not arrive.
   double
   distance_of_arrival(const Problem                      &problem,
                       const std::vector<Eigen::VectorXd> &solutions,
@@ -285,7 +285,7 @@ namespace test_phase_path
             std::max({difference,
                       std::abs(x(reduced.kept[i]) - u[i]),
                       std::abs(x(problem.f.size() + reduced.kept[i]) - r[i])});
-        nearest = std::min(nearest, difference);
+        nearest = std::min(nearest, difference / (1 + x.cwiseAbs().maxCoeff()));
       }
     return nearest;
   }
@@ -311,8 +311,9 @@ namespace test_phase_path
       }
     std::cout << "F = " << F << std::endl;
     check(n_even == 0, "the number of solutions is odd");
-    check(F < 1 || n_several > 0, "there may be several");
-    check_below(largest, 1e-8, "every path leads to one of them");
+    if (F > 1)
+      check(n_several > 0, "there may be several");
+    check_below(largest, 1e-6, "every path leads to one of them");
   }
 
 
@@ -320,7 +321,7 @@ namespace test_phase_path
   void
   large_problem(const double F)
   {
-    constexpr unsigned int n_nodes = 40;
+    constexpr unsigned int n_nodes = 60;
     Random                 random(2);
     double                 wrong = 0, left = 0;
     unsigned int           most = 0;
@@ -349,7 +350,8 @@ namespace test_phase_path
         most = std::max(most, path.n_changes_of_phase());
       }
     std::cout << n_nodes << " nodes, F = " << F << std::endl;
-    check(most > 2 * n_nodes, "the inverse has been found anew on the way");
+    if (F > 1)
+      check(most > 50 + n_nodes, "the inverse has been found anew on the way");
     check_below(wrong, 1e-9, "the law holds");
     check_below(left, 1e-9, "equations hold");
   }
@@ -362,7 +364,11 @@ namespace test_phase_path
     Random  random(3);
     Problem problem = random_problem(random, 3, 1.);
     for (Node &node : problem.nodes)
-      node.tangential = node.normal + 1;
+      {
+        node.tangential  = node.normal + 1;
+        node.coefficient = 1;
+        node.bound       = 0;
+      }
     const std::vector<double> zero(problem.f.size(), 0.);
     const std::vector<char>   none(3, 0);
     PhasePath path(values_of(problem.S), values_of(problem.f), problem.nodes);
@@ -386,7 +392,7 @@ TEST(phase_path)
 {
   for (const double F : {.3, 3., 100., 1e4})
     small_problems(F);
-  for (const double F : {.5, 10.})
+  for (const double F : {.5, 10., 100.})
     large_problem(F);
   failures();
 }
