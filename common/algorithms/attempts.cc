@@ -241,13 +241,18 @@ namespace Friction
   void
   SafeguardedSolver<dim>::Attempts::try_pivoting(const bool others_have_failed)
   {
-    if (!solver.pivoting_is_possible(search, others_have_failed) ||
+    if (report.converged || is_pivoted ||
+        !solver.pivoting_is_possible(search, others_have_failed) ||
         !begin(is_pivoted))
       return;
     start_anew();
     const std::optional<SolverReport> result = solver.pivoting(search);
     if (!result)
-      return;
+      {
+        // A zone that has become too large says nothing against the method.
+        is_pivoted = false;
+        return;
+      }
     attempt(std::string("complementary pivoting") + on_contact_nodes,
             [&]() { return *result; });
     if (report.converged)
@@ -363,7 +368,7 @@ namespace Friction
 
     // Here it is known beforehand what coarse levels are worth.
     if (begin_with == Method::newton &&
-        solver.newton_is_for_contact_nodes_alone(search))
+        solver.all_of_the_law_is_for_contact_nodes_alone(search))
       try_newton();
     try_contact_nodes_alone();
     try_what_has_solved_the_mesh_before();

@@ -118,4 +118,16 @@ namespace Friction
   {
     changes.push_back({to, from, factor, {}});
   }
+
+
+
+  std::size_t
+  BasisInverse::memory_consumption() const
+  {
+    std::size_t bytes =
+      factor.capacity() * sizeof(double) + changes.capacity() * sizeof(Change);
+    for (const Change &change : changes)
+      bytes += change.image.capacity() * sizeof(double);
+    return bytes;
+  }
 } // namespace Friction

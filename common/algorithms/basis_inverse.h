@@ -31,12 +31,6 @@ namespace Friction
       changes.clear();
     }
 
-    unsigned int
-    n_changes() const
-    {
-      return changes.size();
-    }
-
     /** Replaces n values by the inverse times them. */
     void apply(std::vector<double> &x) const;
 
@@ -59,6 +53,9 @@ namespace Friction
     {
       return n_products;
     }
+
+    /** In bytes. */
+    std::size_t memory_consumption() const;
 
   private:
     const std::vector<double> *matrix = nullptr;

@@ -134,7 +134,7 @@ namespace Friction
           const Progress        &progress)
     {
       Assert(dim == 2 || method != By::pivoting,
-             ExcMessage("Phases in space are no straight ones."));
+             ExcMessage("Pivoting is for two dimensions."));
       if constexpr (dim == 2)
         if (method == By::pivoting)
           return solve_by_pivoting(newton, u, state, limits, progress);
@@ -319,12 +319,21 @@ namespace Friction
 
 
   template <int dim>
+  unsigned int
+  CondensedSolver<dim>::n_unknowns() const
+  {
+    return tree ? dim * tree->fronts().back().nodes.size() : 0;
+  }
+
+
+
+  template <int dim>
   bool
   CondensedSolver<dim>::is_worthwhile(const double n_cycles) const
   {
     if (!tree || has_failed)
       return false;
-    const double n = dim * tree->fronts().back().nodes.size();
+    const double n = n_unknowns();
     // Some cycles of the condensed problem, sweeps and factors: these are
     // dense, and take a quarter of the time per multiplication.
     const double cycles = 3 * n * n * (10 + n / 6);
@@ -476,6 +485,9 @@ namespace Friction
     VectorType residual(x.u), image(small->u), start(small->u);
     for (unsigned int pass = 0; pass < passes; ++pass)
       {
+        // A path does not know where it has come to, and may lead elsewhere.
+        const By its_method =
+          method == By::pivoting && pass > 0 ? By::newton_solver : method;
         // What is left over at all nodes, condensed: S (u_c - start) is to be
         // this and the contact forces.
         problem.stiffness.residual(residual, problem.forces, x.u);
@@ -499,7 +511,7 @@ namespace Friction
           const PhaseScope phase(comm, SolverPhase::coarsest);
           if (is_first)
             report =
-              solver->solve(method, small->u, state, its_limits, progress);
+              solver->solve(its_method, small->u, state, its_limits, progress);
           share(report, small->u, state);
         }
         for (unsigned int k = 0; !is_first && k < report.cycles.size(); ++k)

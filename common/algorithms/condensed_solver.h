@@ -67,6 +67,10 @@ namespace Friction
      * processes. */
     bool is_worthwhile(const double n_cycles) const;
 
+    /** Unknowns of the condensed problem, with the zone of the moment; zero if
+     * it is never worth while. The same on all processes. */
+    unsigned int n_unknowns() const;
+
     /** Has solve() end without a solution if the zone grows so that it takes
      * longer than so many cycles, or than most_cycles, which is the limit at
      * first. */

@@ -22,6 +22,15 @@ namespace Friction
 
 
 
+    // Where a path has lost its way.
+    unsigned int
+    most_changes(const std::size_t n)
+    {
+      return 1000 + 100 * n;
+    }
+
+
+
     // Changes of phase after which the inverse, a product, is found anew.
     unsigned int
     most_products(const std::size_t n)
@@ -129,8 +138,8 @@ namespace Friction
   PhasePath::has_first_column(const unsigned int k) const
   {
     const unsigned int p = node_of[k];
-    return is_held(k, now) == is_held(k, first) &&
-      !(p != nowhere && k == nodes[p].normal && is_held(k, now) &&
+    return is_held(k) == is_held(k, first) &&
+      !(p != nowhere && k == nodes[p].normal && is_held(k) &&
         has_friction(nodes[p]) && nodes[p].coefficient > 0 &&
         now[p].side != first[p].side);
   }
@@ -272,7 +281,10 @@ namespace Friction
   bool
   PhasePath::exchange(const unsigned int row, const unsigned int k)
   {
-    if (!(std::abs(image[row]) > negligible))
+    double largest = 0;
+    for (const double value : image)
+      largest = std::max(largest, std::abs(value));
+    if (!(std::abs(image[row]) > negligible * largest))
       return false;
     inverse.exchange(row, image);
     in_row[row] = k;
@@ -341,19 +353,39 @@ namespace Friction
 
 
 
-  // Rounding errors of the way there are left behind.
+  // Of all unknowns but the one that is increased, which is known: rounding
+  // errors of the way are left behind.
+  void
+  PhasePath::find_values(const unsigned int increased)
+  {
+    std::vector<double> rhs(load);
+    for (unsigned int p = 0; p < nodes.size(); ++p)
+      if (rubs(p) && nodes[p].coefficient == 0)
+        rhs[nodes[p].tangential] -= now[p].side * bound(p);
+    // If t is an unknown, its column knows the way.
+    const double left = increased == n ? 1 - t : 1;
+    for (unsigned int k = 0; k < n; ++k)
+      rhs[k] -= left * way[k];
+    if (increased != n)
+      {
+        find_column(increased);
+        for (unsigned int k = 0; k < n; ++k)
+          rhs[k] -= value[increased] * column[k];
+      }
+    inverse.apply(rhs);
+    for (unsigned int i = 0; i < n; ++i)
+      (in_row[i] == n ? t : value[in_row[i]]) = rhs[i];
+  }
+
+
+
   bool
   PhasePath::arrive()
   {
+    t = 1;
     if (!find_inverse(n))
       return false;
-    column = load;
-    for (unsigned int p = 0; p < nodes.size(); ++p)
-      if (rubs(p) && nodes[p].coefficient == 0)
-        column[nodes[p].tangential] -= now[p].side * bound(p);
-    find_image();
-    for (unsigned int i = 0; i < n; ++i)
-      value[in_row[i]] = image[i];
+    find_values(n);
     return true;
   }
 
@@ -496,12 +528,14 @@ namespace Friction
   bool
   PhasePath::follow(const double most)
   {
+    if (n == 0)
+      return true;
     if (!begin_inverse())
       return false;
     unsigned int increased = n;
     double       sign      = 1;
     unsigned int n_since   = 0;
-    while (inverse.n_multiplications() < most)
+    while (inverse.n_multiplications() < most && n_changes < most_changes(n))
       {
         find_rates(increased, sign);
         const Event event = first_event(increased);
@@ -524,9 +558,18 @@ namespace Friction
           {
             if (!find_inverse(increased))
               return false;
+            find_values(increased);
             n_since = 0;
           }
       }
     return false;
+  }
+
+
+
+  std::size_t
+  PhasePath::memory_consumption() const
+  {
+    return matrix.capacity() * sizeof(double) + inverse.memory_consumption();
   }
 } // namespace Friction

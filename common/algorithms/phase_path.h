@@ -12,7 +12,7 @@ namespace Friction
    * Finds a solution of the discrete contact problem with Coulomb's law in two
    * dimensions, whatever the coefficient of friction, by following a path from
    * phase to phase: complementary pivoting (Lemke 1965; for contact with
-   * friction Klarbring 1990). It is for problems with a dense matrix, as that
+   * friction Klarbring 1987). It is for problems with a dense matrix, as that
    * of CondensedSolver.
    *
    * In the plane a node has four phases: open, sticking, sliding one way and
@@ -40,14 +40,16 @@ namespace Friction
    *
    * neither of which is positive, since $|r_T|\le F r_n$. (If its bound is
    * given, it sticks at the start without a tangential force, and adds
-   * $-|r_Tv|$.) Hence $r=r_0$, and the path cannot come back to t=0. The same
-   * equation bounds all solutions with loads between, so that there are
-   * finitely many pieces which the path may consist of. As it goes through none
-   * of them twice, it gets to t=1; unless two nodes change phases at once, or S
-   * is singular, since nothing but contact holds the body. In symmetric
-   * problems two nodes would: distances and normal forces of the start are
-   * multiplied by random numbers. It follows that there is a solution, and,
-   * nearly always, that their number is odd.
+   * $-|r_Tv|$.) Hence $r=r_0$, and since all that touches at the start presses
+   * and all else has a distance, also phases are the same: the path cannot come
+   * back to t=0. Solutions for loads between are bounded, by the same equation,
+   * with the product of $S^{-1}(r-r_0)$ and the difference of loads added to
+   * its right hand side; so no piece of the path is a ray. It goes through none
+   * of them twice, and there are finitely many. So it gets to t=1; unless two
+   * nodes change phases at once, or S is singular, since nothing but contact
+   * holds the body. In symmetric problems two nodes would: distances and normal
+   * forces of the start are multiplied by random numbers. It follows that there
+   * is a solution, and, nearly always, that their number is odd.
    *
    * How many changes of phase there are, nothing is known of. From the contact
    * zone of a good guess they have been fewer than there are nodes, of which
@@ -126,6 +128,9 @@ namespace Friction
     std::vector<double> displacement() const;
     std::vector<double> force() const;
 
+    /** In bytes. */
+    std::size_t memory_consumption() const;
+
   private:
     const std::size_t       n;
     const std::vector<Node> nodes;
@@ -187,6 +192,7 @@ namespace Friction
     bool begin_inverse();
     void begin_anew();
     bool find_inverse(const unsigned int increased);
+    void find_values(const unsigned int increased);
     bool arrive();
 
     void   find_rates(const unsigned int increased, const double sign);

@@ -129,20 +129,22 @@ namespace Friction
     const DenseProblem dense(problem, u, state);
     PhasePath          path(dense.matrix, dense.load, dense.nodes);
 
-    // Iterations that Newton's method would have done meanwhile.
-    const double n_unknowns = dense.directions.size();
-    const double per_step   = n_unknowns * n_unknowns * n_unknowns / 3;
-    const double most       = per_step *
+    // Iterations that Newton's method would have done meanwhile; a tiny problem
+    // takes it some time, too.
+    const double       n        = dense.directions.size();
+    const double       per_step = std::max(1e4, n * n * n / 3);
+    const auto        &budget   = limits.limits.budget;
+    const unsigned int most_steps =
       std::min(limits.limits.maximum_cycles,
-               limits.limits.budget ? limits.limits.budget->cycles_left()
-                                    : limits.limits.maximum_cycles);
+               budget ? budget->cycles_left() : limits.limits.maximum_cycles);
     std::vector<char> touches;
     for (unsigned int p = 0; p < state.size(); ++p)
       touches.push_back(state.in_contact(p));
     path.begin(touches, dense.displacement, dense.force);
-    const bool         has_arrived = path.follow(most);
-    const unsigned int n_iterations =
-      std::ceil(path.n_multiplications() / per_step);
+    const bool         has_arrived = path.follow(most_steps * per_step);
+    const unsigned int n_steps = std::ceil(path.n_multiplications() / per_step);
+    for (unsigned int i = 0; i < n_steps && budget; ++i)
+      budget->take_cycle();
 
     if (has_arrived)
       {
@@ -162,14 +164,17 @@ namespace Friction
           }
       }
 
-    SolverReport report = solve_by_newton(newton, u, state, limits, progress);
-    CycleInfo    on_the_way =
+    SolverReport report;
+    if (has_arrived)
+      report = solve_by_newton(newton, u, state, limits, progress);
+    else
+      certify(report, newton.tresca_functional(), u, state);
+    CycleInfo on_the_way =
       report.cycles.empty() ? CycleInfo() : report.cycles.front();
     on_the_way.increment = 1;
-    report.cycles.insert(report.cycles.begin(), n_iterations, on_the_way);
-    for (unsigned int i = 0; i < n_iterations && limits.limits.budget; ++i)
-      limits.limits.budget->take_cycle();
-    report.converged = report.converged && has_arrived;
+    report.cycles.insert(report.cycles.begin(), n_steps, on_the_way);
+    report.solver_memory +=
+      path.memory_consumption() + dense.matrix.capacity() * sizeof(double);
     return report;
   }
 } // namespace Friction

@@ -22,7 +22,7 @@ namespace Friction
     // To a given tolerance, with the ratio of Lame's constants that the
     // material has; cycles are the more, and the dearer, the less compressible
     // it is, see doc/benchmark/incompressible.txt. Where others have failed, it
-    // is as many as are ever worth while.
+    // is as many as are ever worth while, but for pivoting.
     template <int dim>
     double
     cycles_to_the_end(const double lame_ratio)
@@ -46,8 +46,12 @@ namespace Friction
     // Where pivoting would be, which arrives for certain.
     constexpr double cycles_of_pivoting = 100;
 
-    // And where others have failed.
+    // And for what does not arrive for certain, where others have failed.
     constexpr double most_cycles_alone = 400;
+
+    // Unknowns on contact nodes up to which pivoting has the memory, some five
+    // dense matrices.
+    constexpr unsigned int largest_path = 4000;
 
 
 
@@ -243,7 +247,8 @@ namespace Friction
         Iterate(search.u, search.state));
     if (!condensed->is_worthwhile(n_cycles))
       return false;
-    condensed->give_up_beyond(allowed_growth * n_cycles);
+    condensed->give_up_beyond(std::max(
+      n_cycles, std::min(allowed_growth * n_cycles, most_cycles_alone)));
     return true;
   }
 
@@ -430,13 +435,25 @@ namespace Friction
 
   template <int dim>
   bool
+  SafeguardedSolver<dim>::all_of_the_law_is_for_contact_nodes_alone(
+    const Search &search)
+  {
+    return newton_is_for_contact_nodes_alone(search) ||
+      pivoting_is_possible(search, /*others_have_failed =*/false);
+  }
+
+
+
+  template <int dim>
+  bool
   SafeguardedSolver<dim>::pivoting_is_possible(const Search &search,
                                                const bool    others_have_failed)
   {
     return dim == 2 && problem.has_coulomb_friction() && may_condense() &&
       contact_nodes_alone_take_less(search,
                                     others_have_failed ? Condensed::most_cycles
-                                                       : cycles_of_pivoting);
+                                                       : cycles_of_pivoting) &&
+      condensed->n_unknowns() <= largest_path;
   }
 
 
@@ -553,7 +570,7 @@ namespace Friction
   SafeguardedSolver<dim>::begins_with_contact_nodes_alone(const Search &search)
   {
     return (next_method == Method::newton &&
-            newton_is_for_contact_nodes_alone(search)) ||
+            all_of_the_law_is_for_contact_nodes_alone(search)) ||
       contact_nodes_alone_are_better(search,
                                      next_method == Method::contact_nodes);
   }

@@ -236,6 +236,9 @@ namespace Friction
                                       const CoulombSettings  &its_settings,
                                       const Search           &search);
 
+    // By Newton's method or pivoting.
+    bool all_of_the_law_is_for_contact_nodes_alone(const Search &search);
+
     // In two dimensions, on contact nodes alone.
     bool pivoting_is_possible(const Search &search,
                               const bool    others_have_failed);

@@ -23,7 +23,9 @@ RUNS = (("no sign", "block", 3, ()),
 STYLES = (("Algorithm 3 with levels made", "levels made\nof the matrix", GREEN, "s"),
           ("Algorithm 3 with algebraic", "algebraic\ncorrections", ORANGE, "s"),
           ("Algorithm 3", "Algorithm 3", BLUE, "o"),
-          ("Newton", "Newton", RED, "D"),
+          ("Complementary pivoting", "pivoting", RED, "D"),
+          ("complementary pivoting", "pivoting", RED, "D"),
+          ("Newton", "Newton", ORANGE, "D"),
           ("continuation", "continuation", "k", "^"),
           ("Algorithm 2", "Algorithm 2", PINK, "v"))
 
