@@ -1,14 +1,14 @@
 #include <common/algorithms/basis_inverse.h>
 #include <common/nodes/dense_kernels.h>
 
-#include <algorithm>
+#include <Eigen/Core>
 
 namespace Friction
 {
   namespace
   {
-    // Squares on the diagonal of Cholesky's factor, as parts of the largest
-    // one, that betray a singular matrix.
+    // Squares on the diagonal of Cholesky's factor, as parts of what was there,
+    // that betray a singular matrix.
     constexpr double singular = 1e-13;
   } // namespace
 
@@ -30,18 +30,12 @@ namespace Friction
     for (std::size_t j = 0; j < m; ++j)
       for (std::size_t i = 0; i < m; ++i)
         factor[j * m + i] = S[columns[j] * n + columns[i]];
-    if (m > 0 && !DenseKernels::eliminate(factor.data(), m, m))
-      return false;
     n_products += m * m * m / 6.;
-
-    double smallest = 1, largest = 1;
-    for (std::size_t k = 0; k < m; ++k)
-      {
-        const double square = factor[k * m + k] * factor[k * m + k];
-        smallest            = k == 0 ? square : std::min(smallest, square);
-        largest             = k == 0 ? square : std::max(largest, square);
-      }
-    return smallest > singular * largest;
+    const Eigen::Map<const Eigen::MatrixXd> L(factor.data(), m, m);
+    const Eigen::VectorXd                   diagonal = L.diagonal();
+    return m == 0 ||
+      (DenseKernels::eliminate(factor.data(), m, m) &&
+       (L.diagonal().array().square() > singular * diagonal.array()).all());
   }
 
 
@@ -50,33 +44,16 @@ namespace Friction
   BasisInverse::apply(std::vector<double> &x) const
   {
     const std::size_t n = x.size(), m = columns.size();
-    room.resize(m);
-    double *const y = room.data();
+    Eigen::VectorXd   y(m);
     for (std::size_t k = 0; k < m; ++k)
-      y[k] = x[columns[k]];
-    for (std::size_t k = 0; k < m; ++k)
-      {
-        const double *const L     = &factor[k * m];
-        const double        value = y[k] /= L[k];
-        for (std::size_t i = k + 1; i < m && value != 0; ++i)
-          y[i] -= L[i] * value;
-      }
-    for (std::size_t k = m; k-- > 0;)
-      {
-        const double *const L      = &factor[k * m];
-        double              sum[4] = {0, 0, 0, 0};
-        std::size_t         i      = k + 1;
-        for (; i + 4 <= m; i += 4)
-          for (unsigned int l = 0; l < 4; ++l)
-            sum[l] += L[i + l] * y[i + l];
-        for (; i < m; ++i)
-          sum[0] += L[i] * y[i];
-        y[k] = (y[k] - (sum[0] + sum[1]) - (sum[2] + sum[3])) / L[k];
-      }
+      y(k) = x[columns[k]];
+    const Eigen::Map<const Eigen::MatrixXd> L(factor.data(), m, m);
+    L.triangularView<Eigen::Lower>().solveInPlace(y);
+    L.transpose().triangularView<Eigen::Upper>().solveInPlace(y);
     for (std::size_t k = 0; k < m; ++k)
       {
         const double *const S     = &(*matrix)[columns[k] * n];
-        const double        value = y[k];
+        const double        value = y(k);
         for (const unsigned int i : units)
           x[i] -= S[i] * value;
         x[columns[k]] = value;

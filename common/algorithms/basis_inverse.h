@@ -74,8 +74,7 @@ namespace Friction
     };
     std::vector<Change> changes;
 
-    mutable double              n_products = 0;
-    mutable std::vector<double> room;
+    mutable double n_products = 0;
   };
 } // namespace Friction
 

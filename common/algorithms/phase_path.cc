@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 
 namespace Friction
 {
@@ -62,13 +63,13 @@ namespace Friction
 
 
 
-  PhasePath::PhasePath(const std::vector<double> &the_matrix,
+  PhasePath::PhasePath(std::vector<double>      &&the_matrix,
                        const std::vector<double> &the_load,
                        const std::vector<Node>   &the_nodes)
     : n(the_load.size())
     , nodes(the_nodes)
     , unit(largest_on_diagonal(the_matrix, n))
-    , matrix(divided(the_matrix, unit))
+    , matrix(divided(std::move(the_matrix), unit))
     , node_of(n, nowhere)
     , origin(n, 0.)
     , load(divided(the_load, unit))
@@ -88,6 +89,8 @@ namespace Friction
             node_of[nodes[p].tangential] = p;
             origin[nodes[p].tangential]  = nodes[p].slip_origin;
           }
+        else
+          nodes[p].coefficient = nodes[p].bound = 0.;
       }
     for (std::size_t k = 0; k < n; ++k)
       for (std::size_t i = 0; i < n; ++i)
@@ -99,8 +102,7 @@ namespace Friction
   bool
   PhasePath::has_friction(const Node &node) const
   {
-    return node.tangential != nowhere &&
-      (node.coefficient > 0 || node.bound > 0);
+    return node.coefficient > 0 || node.bound > 0;
   }
 
 
@@ -140,8 +142,7 @@ namespace Friction
     const unsigned int p = node_of[k];
     return is_held(k) == is_held(k, first) &&
       !(p != nowhere && k == nodes[p].normal && is_held(k) &&
-        has_friction(nodes[p]) && nodes[p].coefficient > 0 &&
-        now[p].side != first[p].side);
+        nodes[p].coefficient > 0 && now[p].side != first[p].side);
   }
 
 
@@ -261,7 +262,7 @@ namespace Friction
         column[k]             = 1;
         const unsigned int p  = node_of[k];
         const Node        &at = nodes[p];
-        if (k == at.normal && has_friction(at))
+        if (k == at.normal && at.coefficient > 0)
           column[at.tangential] = now[p].side * at.coefficient;
       }
   }
@@ -316,7 +317,7 @@ namespace Friction
     for (unsigned int k = 0; k < n; ++k)
       in_row[k] = row_of[k] = k;
     for (unsigned int p = 0; p < nodes.size(); ++p)
-      if (first[p].in_contact && first[p].sticks && nodes[p].coefficient > 0)
+      if (first[p].sticks && nodes[p].coefficient > 0)
         inverse.add_row(nodes[p].tangential,
                         nodes[p].normal,
                         -first[p].side * nodes[p].coefficient);
@@ -518,7 +519,7 @@ namespace Friction
     phase.in_contact = !phase.in_contact;
     if (!phase.in_contact)
       return -1;
-    if (has_friction(node) && node.coefficient > 0)
+    if (node.coefficient > 0)
       phase.side = value[node.tangential] < 0 ? -1 : 1;
     return 1;
   }

@@ -87,7 +87,7 @@ namespace Friction
      * @param load    f, of n unknowns; those that belong to no contact node are
      *                free.
      */
-    PhasePath(const std::vector<double> &matrix,
+    PhasePath(std::vector<double>      &&matrix,
               const std::vector<double> &load,
               const std::vector<Node>   &nodes);
 
@@ -132,8 +132,9 @@ namespace Friction
     std::size_t memory_consumption() const;
 
   private:
-    const std::size_t       n;
-    const std::vector<Node> nodes;
+    // Without a tangential unknown a node has no friction.
+    const std::size_t n;
+    std::vector<Node> nodes;
 
     // The largest number on the diagonal of S, which forces are divided by, so
     // that all unknowns are lengths; and S divided by it.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace Friction
 {
@@ -126,8 +127,8 @@ namespace Friction
   {
     const DiscreteProblem<2> &problem =
       newton.tresca_functional().discrete_problem();
-    const DenseProblem dense(problem, u, state);
-    PhasePath          path(dense.matrix, dense.load, dense.nodes);
+    DenseProblem dense(problem, u, state);
+    PhasePath    path(std::move(dense.matrix), dense.load, dense.nodes);
 
     // Iterations that Newton's method would have done meanwhile; a tiny problem
     // takes it some time, too.
@@ -173,8 +174,7 @@ namespace Friction
       report.cycles.empty() ? CycleInfo() : report.cycles.front();
     on_the_way.increment = 1;
     report.cycles.insert(report.cycles.begin(), n_steps, on_the_way);
-    report.solver_memory +=
-      path.memory_consumption() + dense.matrix.capacity() * sizeof(double);
+    report.solver_memory += path.memory_consumption();
     return report;
   }
 } // namespace Friction

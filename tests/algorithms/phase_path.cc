@@ -15,6 +15,7 @@
 #include <cmath>
 #include <iostream>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <tests/support/check.h>
@@ -260,8 +261,8 @@ namespace test_phase_path
                       const std::vector<Eigen::VectorXd> &solutions,
                       Random                             &random)
   {
-    const Reduced     reduced(problem);
-    PhasePath         path(reduced.matrix, reduced.load, reduced.nodes);
+    Reduced   reduced(problem);
+    PhasePath path(std::move(reduced.matrix), reduced.load, reduced.nodes);
     std::vector<char> touches;
     for (unsigned int p = 0; p < problem.nodes.size(); ++p)
       touches.push_back(random.chance(.5));
